@@ -18,6 +18,7 @@ from singimpact.algebra.expressions import Expression, Number, Pi, Product, eval
 from singimpact.algebra.parsing import from_sympy, parse
 from singimpact.inputs import InputError, refuse, require_memory, shown
 
+Array = np.ndarray[Any, Any]
 LONGEST = 1_000_000  # bits of a rational that stands for a ball
 ACCEPTED = "a finite real number, or text such as '0.3', '1/3' or 'pi/2.8'"
 

@@ -15,12 +15,12 @@ from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.numbers import Array
 from singimpact.bench.problems import Problem
 from singimpact.flights.compiled_model import compiled_model
 from singimpact.flights.machine import compilable
 from singimpact.impact_oscillator import ImpactOscillator, linear
 
-Array = np.ndarray[Any, Any]
 CHATTERING = "linear, chattering"
 OMEGAS = {"linear": 2.8, "duffing": 1.7, CHATTERING: 2.0}
 CLEARANCES = {"linear": 0.3, "duffing": 0.3, CHATTERING: 0.7}

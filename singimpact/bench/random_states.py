@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.numbers import Array
 from singimpact.algebra.precision import balls_at
 from singimpact.bench.truth.first_hit import Cubic, Linear, first_hit
 from singimpact.cases import sweep
@@ -20,7 +21,6 @@ from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.status import Status
 
 EPSILON = 2.0**-52
-Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from singimpact.algebra.numbers import Array
 from singimpact.algebra.precision import balls_at
 from singimpact.bench.steep_states import DRAW, EPSILON, drawn
 from singimpact.bench.truth import enclosed_flight
@@ -23,7 +24,6 @@ from singimpact.cases import sweep
 from singimpact.impact_oscillator import ImpactOscillator
 from singimpact.status import Status
 
-Array = np.ndarray[Any, Any]
 DIGITS = 20
 DIGITS_WRONG = 1e-19  # relative error of a number of 20 digits, one unit of the last
 LEAST_ERROR = 2.0**-54  # an answer that is exact by chance has no finite ratio of estimate to error

@@ -10,14 +10,12 @@ from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.numbers import Array
 from singimpact.bench.steep_families import FAMILIES, Family
 from singimpact.bench.steep_states import DRAW, drawn_of
 from singimpact.codegen.taylor_recurrence import Recurrence
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
-
-Array = np.ndarray[Any, Any]
-
 
 # The usual step rule of Taylor integrators, in place of the package's: a step is chosen by its last two terms. Nothing
 # looks at the step afterwards, so it passes over a layer whose terms are below rounding where it begins.

@@ -9,17 +9,15 @@ from fractions import Fraction
 from functools import partial
 from pathlib import Path
 from time import process_time
-from typing import Any
 
 import numpy as np
 
 from singimpact.algebra.certified import Certified
-from singimpact.algebra.numbers import exact
+from singimpact.algebra.numbers import Array, exact
 from singimpact.bench.steep_states import DRAW, drawn, family_of
 from singimpact.cases import sweep
 from singimpact.status import Status
 
-Array = np.ndarray[Any, Any]
 FEWER, MORE = 20, 40
 BOTH, ONE, NEITHER = 2, 1, 0
 COLUMNS = ("status", "enclosed", "apart", "time", "seconds", "more_seconds")

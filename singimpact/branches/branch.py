@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.numbers import as_float, constant
+from singimpact.algebra.numbers import Array, as_float, constant
 from singimpact.branches.branch_walk import BranchWalk
 from singimpact.branches.events import KINDS, Event, own_events
 from singimpact.branches.orbit_curve import SETTINGS, places
@@ -19,7 +19,6 @@ from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION, value_of, with_number
 from singimpact.result import Result, numbered
 
-Array = np.ndarray[Any, Any]
 POINTS = ("parameter", "tau", "v", "stable", "visible", "multipliers")
 """Arrays of a branch, a row for each of its points."""
 

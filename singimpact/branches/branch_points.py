@@ -8,11 +8,10 @@ as (2n, 2k) orbits whose halves are equal. Other branches cross at a slope over 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import Array, as_float
 from singimpact.branches.closing import Closing
 from singimpact.branches.continuation import Curve, Point, cubic_between, null_plane, root_between
 from singimpact.branches.events.kind import EventKind
@@ -117,7 +116,6 @@ def _wall(osc: Oscillator) -> float:
     return as_float(osc.clearance)
 
 
-Array = np.ndarray[Any, Any]
 TEST = Key(BRANCH_POINT, 0, 0)
 
 

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from singimpact import cache
+from singimpact.algebra.numbers import Array
 from singimpact.branches.branch_points import BranchPoint, branch_point
 from singimpact.branches.closing import Closing
 from singimpact.branches.continuation import Curve, Point
@@ -29,7 +30,6 @@ from singimpact.flights.family import SteppedFamily
 from singimpact.inputs import InputError
 from singimpact.store import cache_folder
 
-Array = np.ndarray[Any, Any]
 ABOVE = ("paper/", "documents/", "scenes/", "bench/", "cli/")
 """Sub-packages that no branch depends on: a change of theirs leaves stored points valid."""
 EVERY = 1.0

@@ -16,7 +16,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from singimpact.algebra.balls import as_rational
-from singimpact.algebra.numbers import exact
+from singimpact.algebra.numbers import Array, exact
 from singimpact.algebra.precision import digits_at, for_user
 from singimpact.algebra.solving import halved
 from singimpact.branches.border_digits import DigitOrbits
@@ -29,7 +29,6 @@ from singimpact.result import Result
 from singimpact.theory.fixed_points import tangency
 
 EPSILON = 2.0**-52
-Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)

@@ -12,16 +12,16 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import sqrt
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from singimpact.algebra.numbers import Array
 from singimpact.branches.continuation import cubic_between
 from singimpact.flights.derivative import log_determinant
 from singimpact.flights.family import Family
 from singimpact.oscillator.moving_number import CLEARANCE
 
-Array = np.ndarray[Any, Any]
 NEAR = 0.1
 """A minimum of x - c is refined when it is below this part of the largest height."""
 CANCELLED = 1e-6

@@ -8,9 +8,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from singimpact.algebra.numbers import Array
 from singimpact.progress import ProgressLine
-
-Array = np.ndarray[Any, Any]
 
 
 class Conditions(Protocol):

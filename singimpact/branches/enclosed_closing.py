@@ -19,14 +19,13 @@ from singimpact.algebra.balls import Balls
 from singimpact.algebra.expressions import evaluate
 from singimpact.algebra.isolated_zeros import SETTINGS as BOXES
 from singimpact.algebra.isolated_zeros import IsolatedZeros, Place, zeros_of
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import Array, as_float
 from singimpact.algebra.precision import balls_at, series_of_any_length
 from singimpact.flights.enclosures.equation import Equation, Refused, programs_of
 from singimpact.flights.enclosures.motion import CarriedMotion, Met, Start
 from singimpact.flights.enclosures.tube import Tube, centre, divided, narrowed
 from singimpact.oscillator.model import Oscillator
 
-Array = np.ndarray[Any, Any]
 BITS = 30
 SEARCH = replace(BOXES, bits=BITS + 24, least=Fraction(1, 2**16), most=100_000, lost=20)
 PIECES = 6

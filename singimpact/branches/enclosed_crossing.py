@@ -21,7 +21,7 @@ import numpy as np
 
 from singimpact.algebra.balls import BITS_A_DIGIT
 from singimpact.algebra.certified import Certified, from_ball
-from singimpact.algebra.numbers import exact
+from singimpact.algebra.numbers import Array, exact
 from singimpact.algebra.precision import balls_at
 from singimpact.branches.krawczyk import KRAWCZYK, EnclosedOrbit, Image, Krawczyk, proved, upper
 from singimpact.branches.orbits import PeriodicOrbit
@@ -30,8 +30,6 @@ from singimpact.dynamics.invariant_arcs import model_step
 from singimpact.flights.enclosures.certified_hit import ProvedImpact
 from singimpact.flights.enclosures.equation import Refused
 from singimpact.oscillator.model import Oscillator
-
-Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)

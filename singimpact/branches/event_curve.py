@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.numbers import Array
 from singimpact.branches.branch import interval
 from singimpact.branches.continuation import Curve, Point
 from singimpact.branches.events import KINDS, Event
@@ -20,7 +21,6 @@ from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION, value_of, with_number
 from singimpact.result import Result, numbered
 
-Array = np.ndarray[Any, Any]
 NUDGE = 1e-6
 """Half the width of a central difference, in scaled unknowns: the derivative then has a relative error of 1e-10."""
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from singimpact.algebra.numbers import Array
 from singimpact.branches.cylinder import meetings
 from singimpact.branches.manifold import Manifold, manifold
 from singimpact.branches.orbits import PeriodicOrbit
@@ -29,8 +30,6 @@ from singimpact.surface.curve import RESOLUTION
 if TYPE_CHECKING:
     from singimpact.branches.enclosed_crossing import EnclosedCrossing
     from singimpact.branches.horseshoe import Horseshoe
-
-Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)

@@ -27,6 +27,7 @@ import numpy as np
 
 from singimpact.algebra.balls import BITS_A_DIGIT, as_rational
 from singimpact.algebra.certified import Certified, from_ball
+from singimpact.algebra.numbers import Array
 from singimpact.algebra.precision import balls_at
 from singimpact.branches.enclosed_crossing import prolonged
 from singimpact.branches.krawczyk import least, proved, upper
@@ -36,8 +37,6 @@ from singimpact.flights.derivative import derivative
 from singimpact.flights.enclosures.equation import Refused
 from singimpact.oscillator.model import Oscillator
 from singimpact.result import Result
-
-Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.numbers import as_float, constant
+from singimpact.algebra.numbers import Array, as_float, constant
 from singimpact.branches.cylinder import Nearby, distances
 from singimpact.branches.orbits import Notes, PeriodicOrbit
 from singimpact.branches.saddle_arcs import LocalArc, checked_saddle, directions, local_arc
@@ -21,8 +21,6 @@ from singimpact.inputs import refuse
 from singimpact.oscillator.wall_acceleration import acceleration, largest_push
 from singimpact.result import Result
 from singimpact.surface.curve import RESOLUTION, STATES, Curve, Mark, Window
-
-Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)

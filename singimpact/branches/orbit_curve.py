@@ -9,11 +9,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from singimpact.algebra.numbers import Array
 from singimpact.branches.closing import Closing
 from singimpact.branches.continuation import Curve, Point
 from singimpact.branches.solutions import AnyClosing
-
-Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)

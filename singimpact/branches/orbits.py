@@ -17,7 +17,6 @@ from singimpact.status import Status
 if TYPE_CHECKING:
     from singimpact.branches.krawczyk import EnclosedOrbit
 
-Array = np.ndarray[Any, Any]
 Sentences = tuple[str, ...]
 
 

@@ -18,7 +18,7 @@ import numpy as np
 
 from singimpact.algebra.balls import BITS_A_DIGIT, as_rational
 from singimpact.algebra.expressions import names_in
-from singimpact.algebra.numbers import as_float, constant, rational_near
+from singimpact.algebra.numbers import Array, as_float, constant, rational_near
 from singimpact.algebra.precision import balls_at, digits_at, for_user
 from singimpact.branches.ball_closing import BallClosing, return_slope
 from singimpact.branches.closing import Closing
@@ -35,8 +35,6 @@ from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
-
-Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)

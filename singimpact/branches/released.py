@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import Array, as_float
 from singimpact.dynamics.chatter import ENDING, chatter_left
 from singimpact.dynamics.lift_off import release
 from singimpact.dynamics.long_run import lift_offs
@@ -20,8 +20,6 @@ from singimpact.flights.orbits import orbit_segment
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.status import Status
-
-Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import Array, as_float
 from singimpact.branches.closing import FreeClosing, lowest
 from singimpact.branches.orbits import Notes, PeriodicOrbit, PeriodicOrbits, chatter_orbit
 from singimpact.dynamics.lift_off import turns_between
@@ -19,7 +18,6 @@ from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import CLEARANCE
 from singimpact.status import Status
 
-Array = np.ndarray[Any, Any]
 SAME_PHASE = 1e-9
 """Lift-offs whose phases differ by less than this, of the period, are one."""
 TOUCHING = 1e-12

@@ -15,13 +15,12 @@ from typing import Any
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from singimpact.algebra.numbers import Array
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.solutions import orbit_period
 from singimpact.dynamics.invariant_arcs import before, model_step
 from singimpact.flights.derivative import derivative
 from singimpact.inputs import InputError, refuse
-
-Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)

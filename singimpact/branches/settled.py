@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import Array, as_float
 from singimpact.branches.orbits import PeriodicOrbit, chatter_orbit
 from singimpact.branches.resting import SAME_PHASE
 from singimpact.dynamics.lift_off import turns_between
@@ -15,8 +15,6 @@ from singimpact.dynamics.orbit import Orbit, orbit
 from singimpact.flights.derivative import derivative
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
-
-Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import Array, as_float
 from singimpact.branches.closing import Closing, FreeClosing
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.resting import free_orbit_at
@@ -19,7 +18,6 @@ from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION
 from singimpact.status import Status
 
-Array = np.ndarray[Any, Any]
 AnyClosing = Closing | FreeClosing
 
 

@@ -30,7 +30,7 @@ from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.expressions import Expression, Power, add, evaluate, multiply, number, substitute, subtract
 from singimpact.algebra.isolated_zeros import SETTINGS as BOXES
 from singimpact.algebra.isolated_zeros import IsolatedZeros, isolated_zeros
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import Array, as_float
 from singimpact.algebra.precision import balls_at
 from singimpact.algebra.rings import DOUBLES
 from singimpact.branches.closing import Closing
@@ -45,7 +45,6 @@ from singimpact.oscillator.linear import TAU, T, linear_flight, linear_form
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration
 
-Array = np.ndarray[Any, Any]
 SEARCH = replace(BOXES, bits=64, least=Fraction(1, 2**18))
 EDGE = Fraction(1, 16)
 """Of the window of tau beyond each end of a period: no zero is on an edge."""

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from singimpact.algebra.numbers import Array
 from singimpact.branches.closing import Loop, Turn
 from singimpact.branches.continuation import Curve, Point, cubic_between, root_between
 from singimpact.branches.events.kind import EventKind
@@ -108,9 +109,6 @@ class EventTests:
             if abs(test.value) < zero and (not conserved or abs(test.rate) > NUDGE * test.size):
                 tests[key] = test._replace(value=-copysign(zero, test.rate))
         return tests
-
-
-Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)

@@ -30,7 +30,6 @@ from singimpact.surface.outline_transitions import Transitions
 from singimpact.surface.outline_transitions import transitions as transitions_of_outline
 from singimpact.surface.swan_families import Transition
 
-Array = np.ndarray[Any, Any]
 SEEN_ALONE = ("tacnode", "triple point")
 """Transitions that part intervals only where they are visible."""
 WORDS = ("stable", "neutral", "unstable", "virtual")

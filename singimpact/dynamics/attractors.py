@@ -16,12 +16,11 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import Array, as_float
 from singimpact.flights.derivative import derivative
 from singimpact.flights.orbits import iterate
 from singimpact.oscillator.model import Oscillator
 
-Array = np.ndarray[Any, Any]
 OTHER, CHATTER, CHAOS, GONE, AWAY, STUCK, SENSITIVE = range(7)
 """Classes of states that reach no periodic orbit: not settled, chatter that completes, no period and neighbours that
 separate, proved never to return, no impact before the horizon, a flight that is unresolved, decided by rounding."""

@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import Array, as_float
 from singimpact.case_pools import ThreadPool
 from singimpact.cases import sweep
 from singimpact.dynamics.attractors import (
@@ -36,8 +36,6 @@ from singimpact.inputs import refuse, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.result import Result
 from singimpact.surface.curve import window_ends
-
-Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)

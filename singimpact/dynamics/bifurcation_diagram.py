@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from singimpact.algebra.expressions import names_in
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import Array, as_float
 from singimpact.case_pools import ThreadPool
 from singimpact.cases import sweep
 from singimpact.dynamics.attractors import apart, nearby_orbits
@@ -22,7 +22,6 @@ from singimpact.oscillator.moving_number import with_number
 from singimpact.result import Result
 from singimpact.surface.curve import window_ends
 
-Array = np.ndarray[Any, Any]
 FEW = 200_000
 """Total of impacts below which no processes are started: about 5 s of work."""
 

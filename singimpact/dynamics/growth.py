@@ -8,13 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.numbers import Array
 from singimpact.surface.curve import Window, distances
-
-Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.expressions import names_in
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import Array, as_float
 from singimpact.contact.points import tangency_points
 from singimpact.dynamics.growth import SETTINGS as GROWTH
 from singimpact.dynamics.growth import Carried, Piece, adds, held
@@ -26,8 +26,6 @@ from singimpact.surface.curve import STATES, Curve, Mark, Window
 from singimpact.theory.contact_points import points_of
 from singimpact.theory.formulas import arc_in_numbers
 from singimpact.theory.power_series import PowerSeries
-
-Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)

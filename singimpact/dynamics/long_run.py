@@ -8,11 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import Array, as_float
 from singimpact.contact.points import tangency_points
 from singimpact.dynamics.attractors import CHATTER, OTHER
 from singimpact.dynamics.lift_off import release
@@ -20,8 +19,6 @@ from singimpact.dynamics.orbit import orbit
 from singimpact.flights.orbits import iterate
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration
-
-Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.numbers import as_float, compare
+from singimpact.algebra.numbers import Array, as_float, compare
 from singimpact.dynamics.attractors import apart
 from singimpact.dynamics.chatter import ENDING, chatter_limit
 from singimpact.dynamics.lift_off import periods_between, release
@@ -29,8 +29,6 @@ from singimpact.inputs import InputError, refuse, shown, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.result import Result
 from singimpact.status import Status
-
-Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.expressions import subtract
-from singimpact.algebra.numbers import as_float, constant, float_array
+from singimpact.algebra.numbers import Array, as_float, constant, float_array
 from singimpact.dynamics.chatter import ENDING, chatter_left, impacts_until
 from singimpact.dynamics.lift_off import periods_between, release
 from singimpact.dynamics.sampling import Section, sampled
@@ -28,7 +28,6 @@ from singimpact.result import Result
 from singimpact.status import Status
 
 EPSILON = 2.0**-52
-Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)

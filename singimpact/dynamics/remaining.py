@@ -19,14 +19,13 @@ import numpy as np
 
 from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.expressions import MINUS_ONE, Expression, evaluate, multiply, number, power, substitute
-from singimpact.algebra.numbers import as_float, compare
+from singimpact.algebra.numbers import Array, as_float, compare
 from singimpact.algebra.rings import DOUBLES
 from singimpact.contact.contact import Contact
 from singimpact.generated.completion import chatter_terms
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration
 
-Array = np.ndarray[Any, Any]
 ORDER = 4
 """Terms of the time left, where rho is smooth at rest."""
 TERMS = 8

@@ -4,17 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import ceil, log
-from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import Array, as_float
 from singimpact.flights.flight_path import along, dropped
 from singimpact.flights.orbits import orbit_segment
 from singimpact.oscillator.model import Oscillator
 from singimpact.result import Result
-
-Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)

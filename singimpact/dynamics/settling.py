@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import Array, as_float
 from singimpact.dynamics.attractors import (
     AWAY,
     CHAOS,
@@ -36,8 +36,6 @@ from singimpact.flights.orbits import iterate
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.status import Status
-
-Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)

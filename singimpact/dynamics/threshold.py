@@ -12,7 +12,7 @@ import numpy as np
 
 from singimpact.algebra.balls import Balls, as_rational
 from singimpact.algebra.expressions import Expression
-from singimpact.algebra.numbers import as_float, as_mpf, compare, constant
+from singimpact.algebra.numbers import Array, as_float, as_mpf, compare, constant
 from singimpact.algebra.precision import digits_at, for_user
 from singimpact.contact.zero_ahead import ContactZero, next_zero
 from singimpact.dynamics import enclosed
@@ -33,7 +33,6 @@ from singimpact.theory.contact_points import Place
 from singimpact.theory.formulas import curve_at
 
 EPSILON = 2.0**-52
-Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.numbers import as_float, constant
+from singimpact.algebra.numbers import Array, as_float, constant
 from singimpact.algebra.solving import halved
 from singimpact.contact.points import tangency_points
 from singimpact.dynamics.chatter import chatter_limit
@@ -27,7 +27,6 @@ from singimpact.status import Status
 from singimpact.surface.impact_surface import Cusp, ImpactSurface, crossing
 from singimpact.surface.rest_flights import RestFlights
 
-Array = np.ndarray[Any, Any]
 Point = tuple[float, float]
 REACH_TAU, REACH_T = 4.0, 6.0  # of the picture, in half distances of A and B: the unfolded swan fits
 

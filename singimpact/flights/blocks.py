@@ -12,11 +12,11 @@ from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.numbers import Array
 from singimpact.flights.results import Flight
 from singimpact.inputs import InputError, require_memory
 from singimpact.status import status_array
 
-Array = np.ndarray[Any, Any]
 SPARSE = ("depth", "bound")
 """Numbers that few flights have."""
 ALWAYS = ("status", "cause")

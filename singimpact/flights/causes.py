@@ -8,13 +8,12 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.expressions import Call, Expression, Number, Power, evaluate, substitute
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import Array, as_float
 from singimpact.algebra.rings import DOUBLES
 from singimpact.flights.model_numbers import recurrence_of
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Cause, Status
 
-Array = np.ndarray[Any, Any]
 ENDED = {5: Cause.near_graze, 21: Cause.step_budget, 22: Cause.domain_left, 23: Cause.overflow}
 """The codes of `march` that are no statuses."""
 

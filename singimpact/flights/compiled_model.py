@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.expressions import names_in, substitute
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import Array, as_float
 from singimpact.algebra.precision import kept_property
 from singimpact.codegen.scalar import scalar
 from singimpact.codegen.taylor_recurrence import Recurrence
@@ -37,9 +37,6 @@ from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.phase import reduced
 from singimpact.oscillator.rebound import rho_of
-
-Array = np.ndarray[Any, Any]
-
 
 PREPARATIONS = {"linear_entry": entries.PREPARE, "batch_entry": entries.PREPARE_BATCH}
 """Kinds of work that fill the tables which an entry reads."""

@@ -18,7 +18,7 @@ import numpy as np
 
 from singimpact.algebra.derivatives import derivative as formula_of_derivative
 from singimpact.algebra.expressions import evaluate, names_in, substitute
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import Array, as_float
 from singimpact.algebra.rings import DOUBLES
 from singimpact.flights.blocks import in_blocks, many
 from singimpact.flights.compiled_model import allowed, compiled_model
@@ -34,8 +34,6 @@ from singimpact.flights.undecided import Flown, flights_and_rows
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.status import Status
-
-Array = np.ndarray[Any, Any]
 
 
 def derivative(osc: Oscillator, tau: Any, v: Any, *, horizon: Any = None) -> Derivative:

@@ -32,7 +32,7 @@ from singimpact.algebra.expressions import (
     substitute,
     subtract,
 )
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import Array, as_float
 from singimpact.algebra.rings import DOUBLES
 from singimpact.codegen.taylor_recurrence import recurrence
 from singimpact.flights.compiled_model import CompiledModel, compiled_model
@@ -44,7 +44,6 @@ from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION, value_of
 from singimpact.oscillator.period import common_period
 from singimpact.oscillator.rebound import rho_of
 
-Array = np.ndarray[Any, Any]
 Values = Mapping[str, float]
 
 

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import Array, as_float
 from singimpact.codegen.taylor_recurrence import Recurrence
 from singimpact.flights.horizons import Allowance
 from singimpact.flights.kernels import layout
@@ -24,7 +23,6 @@ from singimpact.flights.model_numbers import (
 )
 from singimpact.oscillator.model import Oscillator
 
-Array = np.ndarray[Any, Any]
 EPSILON = UNIT
 
 

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from singimpact.algebra.expressions import evaluate
-from singimpact.algebra.numbers import as_float, float_array
+from singimpact.algebra.numbers import Array, as_float, float_array
 from singimpact.algebra.rings import DOUBLES
 from singimpact.flights import flight_count
 from singimpact.flights.compiled_model import compiled_model
@@ -16,8 +16,6 @@ from singimpact.flights.states import States
 from singimpact.inputs import InputError
 from singimpact.oscillator.model import Oscillator
 from singimpact.result import Result, in_words, plain
-
-Array = np.ndarray[Any, Any]
 
 
 class _Place(NamedTuple):

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.expressions import names_in
-from singimpact.algebra.numbers import as_float, constant
+from singimpact.algebra.numbers import Array, as_float, constant
 from singimpact.flights import undecided
 from singimpact.flights.blocks import in_blocks, many
 from singimpact.flights.compiled_model import CompiledModel, allowed, compiled_model
@@ -32,7 +32,6 @@ from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration_at
 from singimpact.status import Cause, Status, status_array
 
-Array = np.ndarray[Any, Any]
 NONE = np.int8(0)
 LATE = 2.0**22
 """Launch times from which on the rounding of phases that no period takes in is looked at."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from singimpact.algebra.certified import from_ball
 from singimpact.algebra.expressions import Expression
-from singimpact.algebra.numbers import as_mpf, sign_of
+from singimpact.algebra.numbers import Array, as_mpf, sign_of
 from singimpact.algebra.precision import digits_at, for_user
 from singimpact.flights import undecided
 from singimpact.flights.causes import decoded
@@ -25,8 +25,6 @@ from singimpact.flights.results import CertifiedImpact, Flight, Step
 from singimpact.flights.states import States
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Cause, Status
-
-Array = np.ndarray[Any, Any]
 
 
 def flights(osc: Oscillator, states: States, digits: int, allowance: Allowance) -> Flight:

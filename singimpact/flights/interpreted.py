@@ -9,14 +9,13 @@ from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.numbers import Array
 from singimpact.flights.bind import Emitted, over_floats
 from singimpact.flights.kernels import layout
 from singimpact.flights.kernels.state import Work
 
 LEFT_OPEN = (ZeroDivisionError, OverflowError, ValueError, TypeError)
 """What Python raises where doubles have an answer: 1/0, exp(1000), log(-1), a comparison of (-1)**0.5."""
-
-Array = np.ndarray[Any, Any]
 
 
 def listed(part: Any) -> Any:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.expressions import Name, multiply, names_in, number, substitute
-from singimpact.algebra.numbers import as_float, as_mpf
+from singimpact.algebra.numbers import Array, as_float, as_mpf
 from singimpact.algebra.precision import digits_at, for_user
 from singimpact.flights.blocks import in_blocks, many
 from singimpact.flights.compiled_model import compiled_model
@@ -20,7 +20,6 @@ from singimpact.flights.undecided import in_shape
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status, status_array
 
-Array = np.ndarray[Any, Any]
 KEPT = ("flight_time", "depth", "bound", "condition", "velocity_condition", "time_error", "velocity_error", "cause")
 
 

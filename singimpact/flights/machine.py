@@ -23,6 +23,7 @@ from typing import Any
 import numpy as np
 
 from singimpact import cache
+from singimpact.algebra.numbers import Array
 from singimpact.flights import bind
 from singimpact.flights.bind import Emitted
 from singimpact.flights.kernels import layout
@@ -47,7 +48,6 @@ class CompilingSettings:
 SETTINGS = CompilingSettings()
 FOLDER = "kernels"
 Entry = tuple[Callable[..., int], Callable[..., int]]
-Array = np.ndarray[Any, Any]
 FEW = 32
 """States of one call of a `Bound` entry at most."""
 

@@ -11,14 +11,12 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.expressions import Expression, Number, Pi, multiply, number, power, substitute
-from singimpact.algebra.numbers import as_float, rational_near, sign_of
+from singimpact.algebra.numbers import Array, as_float, rational_near, sign_of
 from singimpact.codegen.taylor_recurrence import Recurrence, recurrence
 from singimpact.flights.kernels.state import Linear
 from singimpact.inputs import InputError
 from singimpact.oscillator.linear import LinearForm, at_rest, linear_form
 from singimpact.oscillator.model import Oscillator
-
-Array = np.ndarray[Any, Any]
 
 
 @lru_cache(maxsize=256)

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.expressions import Expression, Number, subtract
-from singimpact.algebra.numbers import as_float, as_mpf, constant, float_array
+from singimpact.algebra.numbers import Array, as_float, as_mpf, constant, float_array
 from singimpact.algebra.precision import digits_at
 from singimpact.flights.bind import over_mpmath
 from singimpact.flights.causes import decoded, where
@@ -37,8 +37,6 @@ from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.model import Oscillator
 from singimpact.result import Result, in_words
 from singimpact.status import Cause, Status, status_array
-
-Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)

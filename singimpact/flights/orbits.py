@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import Array, as_float
 from singimpact.flights.blocks import LEAST, in_blocks, many
 from singimpact.flights.causes import decoded
 from singimpact.flights.compiled_model import allowed, compiled_model
@@ -22,7 +22,6 @@ from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.result import Result, default_axes, in_words
 from singimpact.status import Status, status_array
 
-Array = np.ndarray[Any, Any]
 SLOW = 1e-6
 """Impacts below this velocity may be those of a chatter that is over, for a_c up to 1e10 times tau."""
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.expressions import Expression, evaluate, names_in, number
-from singimpact.algebra.numbers import as_float, as_mpf
+from singimpact.algebra.numbers import Array, as_float, as_mpf
 from singimpact.algebra.precision import digits_at, for_user
 from singimpact.algebra.rings import DOUBLES, Multiprecision
 from singimpact.oscillator.model import Oscillator
@@ -20,8 +20,6 @@ STEPS = 120
 DIGITS = 20  # of a speed that doubles leave open
 FLAT = 64  # roundings of v that one rounding of the speed may stand for
 SPARE = 40  # digits beyond 2 `digits`: half of the digits are lost where rho has a maximum
-
-Array = np.ndarray[Any, Any]
 
 
 def rebound(osc: Oscillator, velocity: Array) -> Array:

@@ -15,7 +15,7 @@ import numpy as np
 
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.expressions import evaluate
-from singimpact.algebra.numbers import as_float, as_mpf
+from singimpact.algebra.numbers import Array, as_float, as_mpf
 from singimpact.algebra.precision import balls_at
 from singimpact.algebra.rings import DOUBLES, Multiprecision
 from singimpact.flights.bind import over_mpmath
@@ -28,8 +28,6 @@ from singimpact.flights.model_numbers import constants_of, recurrence_of
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.phase import reduced
 from singimpact.oscillator.wall_acceleration import in_floats_of
-
-Array = np.ndarray[Any, Any]
 
 
 class Response(NamedTuple):

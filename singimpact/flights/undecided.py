@@ -11,6 +11,7 @@ import numpy as np
 
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.expressions import evaluate
+from singimpact.algebra.numbers import Array
 from singimpact.algebra.precision import balls_at
 from singimpact.flights.causes import decoded, explained
 from singimpact.flights.compiled_model import CompiledModel
@@ -30,7 +31,6 @@ from singimpact.oscillator.phase import reduced
 from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.status import Cause, Status
 
-Array = np.ndarray[Any, Any]
 Flown = tuple[Array, Array]
 """Codes and columns of hits, as `CompiledModel.hits` returns them."""
 PLAIN = ("flight_time", "velocity", "status", "cause", "notes")

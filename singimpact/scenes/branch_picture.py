@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.numbers import Array
 from singimpact.branches.branch import Branch
 from singimpact.branches.event_curve import EventCurve
 from singimpact.branches.events import Event, kind_of
@@ -28,7 +29,6 @@ from singimpact.scenes.style import (
     orbit_width,
 )
 
-Array = np.ndarray[Any, Any]
 HEIGHTS = {"v": "velocity $v$ after an impact", "phase": "phase of an impact, in periods", "x": "lowest $x - c$"}
 WORDS = {"stable": "stable", "unstable": "unstable", "virtual": "virtual: goes through the wall"}
 

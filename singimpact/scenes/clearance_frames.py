@@ -11,7 +11,7 @@ import numpy as np
 
 from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.expressions import evaluate, names_in, number, substitute
-from singimpact.algebra.numbers import as_float, compare
+from singimpact.algebra.numbers import Array, as_float, compare
 from singimpact.algebra.rings import DOUBLES
 from singimpact.contact.swans import SwanPoint, swan_points_over_clearance
 from singimpact.dynamics.invariant_arcs import grown_gamma
@@ -23,7 +23,6 @@ from singimpact.surface.classification import default_window
 from singimpact.surface.curve import Curve, Window
 from singimpact.surface.impact_surface import ImpactSurface
 
-Array = np.ndarray[Any, Any]
 Span = tuple[float, float]
 
 

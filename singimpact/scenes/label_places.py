@@ -9,9 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.numbers import Array
 from singimpact.scenes.style import BLACK, GREY
-
-Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import Array, as_float
 from singimpact.branches.enclosed_crossing import EnclosedCrossing
 from singimpact.branches.homoclinic import Crossings
 from singimpact.branches.horseshoe import CrossedSet, Horseshoe
@@ -17,8 +17,6 @@ from singimpact.branches.manifold import Manifold
 from singimpact.dynamics.invariant_arcs import model_step
 from singimpact.inputs import refuse
 from singimpact.scenes.style import BLACK, BLUE, DASHES, GREEN, ORANGE, PENS
-
-Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)

@@ -9,10 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.numbers import as_float, constant
+from singimpact.algebra.numbers import Array, as_float, constant
 from singimpact.inputs import refuse
 
-Array = np.ndarray[Any, Any]
 SURFACE, STATES = ("tau", "t"), ("tau", "v")
 """The axes of the two planes: launches with flight times, and launches."""
 

@@ -11,18 +11,16 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from singimpact.algebra.expressions import multiply, number, subtract
-from singimpact.algebra.numbers import as_float, sign_of
+from singimpact.algebra.numbers import Array, as_float, sign_of
 from singimpact.flights.flight_path import many_paths
 from singimpact.surface.rest_flights import RestFlights
 from singimpact.surface.swan_families import Family
 from singimpact.surface.two_rests import GRID, LinearRests, Rests, distinct, is_whole, linear_rests, newton
-
-Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)

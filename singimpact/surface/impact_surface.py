@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import Array, as_float
 from singimpact.contact.points import TangencyPoint, tangency_points
 from singimpact.flights.impact_map import first_hit
 from singimpact.flights.inverse_map import backwards
@@ -30,9 +30,6 @@ from singimpact.status import Status
 from singimpact.surface.curve import RESOLUTION, STATES, SURFACE, Curve, Mark, Window
 from singimpact.surface.rest_flights import RestFlights
 from singimpact.surface.tracing import Polyline, traced
-
-Array = np.ndarray[Any, Any]
-
 
 # The points of Z that have a name become its vertices.
 

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.expressions import evaluate
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import Array, as_float
 from singimpact.algebra.precision import kept_property
 from singimpact.algebra.rings import DOUBLES
 from singimpact.contact.points import tangency_points
@@ -33,8 +33,6 @@ from singimpact.surface.proved_touches import doubts_left
 from singimpact.surface.rest_flights import RestFlights
 from singimpact.surface.swan_families import STEPS, Family, Transition, bracketed, swans_met, told
 from singimpact.surface.two_rests import Rests, linear_rests
-
-Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)

@@ -14,15 +14,13 @@ import numpy as np
 
 from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.expressions import evaluate
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import Array, as_float
 from singimpact.algebra.rings import DOUBLES
 from singimpact.contact.contact import acceleration
 from singimpact.flights.flight_path import ends, many_paths
 from singimpact.flights.inverse_map import backwards
 from singimpact.flights.response import variations
 from singimpact.oscillator.model import Oscillator
-
-Array = np.ndarray[Any, Any]
 
 
 @dataclass

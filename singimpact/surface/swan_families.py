@@ -12,7 +12,7 @@ import numpy as np
 
 from singimpact.algebra.expressions import Expression, Name
 from singimpact.algebra.isolated_zeros import DoubleZero, DoubleZeros, double_zeros
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import Array, as_float
 from singimpact.contact.contact import acceleration, rest_acceleration
 from singimpact.contact.swans import swan_points_over_clearance
 from singimpact.flights.flight_path import many_paths
@@ -26,7 +26,6 @@ from singimpact.result import Result
 from singimpact.status import Status
 from singimpact.surface.curve import Curve, window_ends
 
-Array = np.ndarray[Any, Any]
 STEPS = 60  # between the ends of a number that is sampled: rows of a picture of curves, places where others are met
 SLACK = 1e-12  # of a period: a zero at 0 is found with a tiny sign
 MARGIN = 97  # the window of tau is longer than a period by this part at both ends, so that no zero falls on one

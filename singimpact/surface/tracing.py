@@ -9,14 +9,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.numbers import Array
 from singimpact.inputs import Unfinished
 from singimpact.surface.curve import Window
 
-Array = np.ndarray[Any, Any]
 Gradient = Callable[[Array], tuple[Array, Array, Array, Array]]
 """Points -> y, its gradient, a further column, and the gradient of that."""
 Grid = Callable[[Array, Array], Array]

@@ -37,13 +37,11 @@ from singimpact.algebra.expressions import (
     subtract,
 )
 from singimpact.algebra.isolated_zeros import isolate
-from singimpact.algebra.numbers import as_float, sign_of
+from singimpact.algebra.numbers import Array, as_float, sign_of
 from singimpact.algebra.rings import DOUBLES
 from singimpact.oscillator.linear import LinearForm, at_rest, form_of, steady_motion, waves
 from singimpact.oscillator.moving_number import CLEARANCE
 from singimpact.surface.swan_families import Family
-
-Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,8 @@ from pathlib import Path
 import numpy as np
 
 import singimpact as si
-from singimpact.bench.drawn import CHATTERING, Array, Draws, States
+from singimpact.algebra.numbers import Array
+from singimpact.bench.drawn import CHATTERING, Draws, States
 from singimpact.bench.fresh import cost
 from singimpact.bench.groups import branch_rows
 from singimpact.bench.groups.command_rows import RUN, SERIES

@@ -11,7 +11,6 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import inf, isfinite
-from typing import Any
 
 import numpy as np
 
@@ -23,7 +22,6 @@ from singimpact.dynamics import basins_of_attraction
 from singimpact.flights.horizons import horizon_of
 from singimpact.inputs import InputError
 
-Array = np.ndarray[Any, Any]
 NAME = "pixels of basins"
 UNSETTLED = ("chaotic", "not decided")
 

@@ -12,15 +12,13 @@ import numpy as np
 
 from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.expressions import evaluate
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import Array, as_float
 from singimpact.algebra.rings import DOUBLES
 from singimpact.bench.selftest.rows import Row, Tally
 from singimpact.bench.truth.plain_orbits import PlainOrbits, plain_orbits
 from singimpact.flights.results import Step
 from singimpact.impact_oscillator import ImpactOscillator
 from singimpact.oscillator.wall_acceleration import acceleration
-
-Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)

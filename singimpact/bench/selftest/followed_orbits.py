@@ -7,7 +7,6 @@ flights from rest by scipy's DOP853. Shared with the package: f, g, rho as expre
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -19,7 +18,6 @@ from singimpact.status import Status
 
 EPSILON = 2.0**-52
 ORBIT_NAME, LIMIT_NAME = "orbits, event by event", "chatter limits"
-Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)

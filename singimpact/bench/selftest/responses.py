@@ -7,17 +7,16 @@ evaluated by Python at the velocity of the hit. Shared with the package: f, g an
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.numbers import Array
 from singimpact.bench.selftest.draws import DRAW, Flown, against_plain_orbits
 from singimpact.bench.selftest.rows import Row, Tally
 from singimpact.bench.truth.plain_orbits import PlainOrbits
 from singimpact.oscillator.rebound import rho_of
 from singimpact.status import Status
 
-Array = np.ndarray[Any, Any]
 DERIVATIVE, REBOUND = "D G against differences", "rebound"
 
 

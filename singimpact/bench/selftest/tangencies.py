@@ -6,10 +6,10 @@ Truth: signs of a_c, evaluated by Python from the expression trees of f and g, w
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.numbers import Array
 from singimpact.bench.selftest.draws import Flown
 from singimpact.bench.selftest.rows import Row, Tally
 from singimpact.contact.points import tangency_points
@@ -18,7 +18,6 @@ from singimpact.inputs import InputError
 NAME = "tangency points"
 SIGNS = {"gamma": (-1, 1), "foliation": (1, -1)}
 EPSILON = 2.0**-52
-Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)

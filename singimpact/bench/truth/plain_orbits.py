@@ -14,12 +14,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import Array, as_float
 from singimpact.bench.truth import graded_steps, plain_steps
 from singimpact.bench.truth.graded_steps import HIT, MISS, UNDECIDED, Motion
 from singimpact.oscillator.model import Oscillator
-
-Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)

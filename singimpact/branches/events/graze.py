@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from singimpact.algebra.numbers import Array
 from singimpact.branches.events.kind import CurveLook, EventKind, Indexed, grazes
 from singimpact.branches.events.orbit_state import OrbitState, Test
 
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
     from singimpact.branches.orbits import PeriodicOrbit
     from singimpact.branches.solutions import AnyClosing
 
-Array = np.ndarray[Any, Any]
 DEGENERATE = 1e-6
 """a_c at the graze, of the largest a_c in a period, below which the graze is called degenerate."""
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
+from singimpact.algebra.numbers import Array
 from singimpact.branches.events.orbit_state import NUDGE, OrbitState, Test
 
 if TYPE_CHECKING:
@@ -14,7 +15,6 @@ if TYPE_CHECKING:
     from singimpact.branches.orbits import PeriodicOrbit
     from singimpact.branches.solutions import AnyClosing
 
-Array = np.ndarray[Any, Any]
 Indexed = Iterator[tuple[int, int, Test]]
 """Impact or flight, which of its minima, and the test there."""
 

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from singimpact.algebra.numbers import Array
 from singimpact.branches.events.kind import EventKind, ReturnMapKind
 from singimpact.branches.events.orbit_state import OrbitState
 
 if TYPE_CHECKING:
     from singimpact.branches.solutions import AnyClosing
 
-Array = np.ndarray[Any, Any]
 ALIKE = 1e-3
 """Parts of an orbit that differ by less, in scaled unknowns, where the branch comes near an orbit that repeats them."""
 

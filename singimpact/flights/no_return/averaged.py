@@ -16,10 +16,9 @@ import numpy as np
 
 from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.expressions import Call, Expression, Product, Sum, add, multiply, names_in, negate, number
-from singimpact.algebra.numbers import as_float, sign_of
+from singimpact.algebra.numbers import Array, as_float, sign_of
 from singimpact.oscillator.model import Oscillator
 
-Array = np.ndarray[Any, Any]
 MARGIN = 1e-9  # of every sum here, which is a few roundings
 
 

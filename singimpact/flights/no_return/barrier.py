@@ -20,13 +20,11 @@ import numpy as np
 
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.expressions import Name, add, evaluate, multiply, number, substitute, walk
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import Array, as_float
 from singimpact.algebra.precision import balls_at
 from singimpact.algebra.rings import DOUBLES
 from singimpact.flights.no_return.polynomial import extremes_of_forcing, least_on_a_grid
 from singimpact.oscillator.model import Oscillator
-
-Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)

@@ -18,15 +18,13 @@ import numpy as np
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.expressions import Expression, Name, Number, Power, Product, Sum, evaluate, names_in
 from singimpact.algebra.jets import JetSpace
-from singimpact.algebra.numbers import as_float, sign_of
+from singimpact.algebra.numbers import Array, as_float, sign_of
 from singimpact.algebra.precision import balls_at
 from singimpact.algebra.rings import DOUBLES
 from singimpact.flights.model_numbers import turn
 from singimpact.oscillator.linear import LinearForm, at_rest
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.phase import reduced
-
-Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)

@@ -13,14 +13,14 @@ from fractions import Fraction
 import numpy as np
 import sympy
 
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import Array, as_float
 from singimpact.dynamics.orbit import orbit
 from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.paper.claims.beyond.every_order import j
 from singimpact.paper.claims.beyond.hertz import EXPONENT, FACTOR, SECOND, q
-from singimpact.paper.figures.panel import Array, Dot, Line, Panel, Picture, Point, Region
+from singimpact.paper.figures.panel import Dot, Line, Panel, Picture, Point, Region
 from singimpact.paper.trials import loop_heights
 from singimpact.paper.trials.hertz_orbits import POWERS, STARTS, measured
 from singimpact.paper.trials.universal_foot import covering, elastic, foot, scaled

@@ -8,13 +8,14 @@ from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.numbers import Array
 from singimpact.contact.points import tangency_points
 from singimpact.dynamics.invariant_arcs import gammas_within, model_step, stable_manifold
 from singimpact.flights.flight_path import many_paths
 from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration
-from singimpact.paper.figures.panel import ARCS, Array, Dot, Line, Panel, Picture, Point, Region
+from singimpact.paper.figures.panel import ARCS, Dot, Line, Panel, Picture, Point, Region
 from singimpact.studies import swan_points
 from singimpact.surface.curve import Curve, Window
 from singimpact.surface.impact_surface import ImpactSurface

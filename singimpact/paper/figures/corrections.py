@@ -7,12 +7,12 @@ from math import log
 
 import numpy as np
 
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import Array, as_float
 from singimpact.dynamics.orbit import orbit
 from singimpact.dynamics.unfolded_swan import swan_configuration
 from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.oscillator.wall_acceleration import acceleration
-from singimpact.paper.figures.panel import Array, Dot, Line, Panel, Picture
+from singimpact.paper.figures.panel import Dot, Line, Panel, Picture
 from singimpact.paper.trials import first_order_feet, orbits_beside_gamma
 
 DAMPING, CLEARANCE = 0.4, 0.9

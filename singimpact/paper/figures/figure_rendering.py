@@ -10,11 +10,10 @@ from typing import Any, cast
 
 import numpy as np
 
+from singimpact.algebra.numbers import Array
 from singimpact.paper.figures.panel import Line, Panel, Picture
 from singimpact.scenes.label_places import place_labels
 from singimpact.scenes.style import BLACK, GREY, PENS, on_dark
-
-Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)

@@ -8,11 +8,12 @@ from functools import lru_cache
 
 import numpy as np
 
+from singimpact.algebra.numbers import Array
 from singimpact.flights.impact_map import first_hit
 from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.paper.figures.contact_figures import launch_and_landing, oscillator
-from singimpact.paper.figures.panel import Array, Dot, Line, Panel, Picture, Point
+from singimpact.paper.figures.panel import Dot, Line, Panel, Picture, Point
 from singimpact.paper.figures.swan_figures import box, half, negative, positive, ring
 from singimpact.surface.curve import Curve
 from singimpact.surface.impact_surface import ImpactSurface

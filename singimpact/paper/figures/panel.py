@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.numbers import Array
 from singimpact.scenes.style import SHADE
 
-Array = np.ndarray[Any, Any]
 ARCS = 500  # points across, for invariant arcs: half of what a panel has, less than the width of a line
 Point = tuple[float, float]
 

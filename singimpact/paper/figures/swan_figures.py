@@ -7,10 +7,11 @@ from functools import lru_cache
 
 import numpy as np
 
+from singimpact.algebra.numbers import Array
 from singimpact.dynamics.unfolded_swan import SwanConfiguration, swan_configuration
 from singimpact.impact_oscillator import linear
 from singimpact.paper.figures.contact_figures import reset
-from singimpact.paper.figures.panel import Array, Dot, Line, Panel, Picture, Point, Region, arc
+from singimpact.paper.figures.panel import Dot, Line, Panel, Picture, Point, Region, arc
 from singimpact.surface.impact_surface import ImpactSurface
 
 FINE = 1 / 3000  # of the window of the configuration: its outline is magnified until the usual chords would show

@@ -7,11 +7,12 @@ from functools import lru_cache
 
 import numpy as np
 
+from singimpact.algebra.numbers import Array
 from singimpact.dynamics.growth import held
 from singimpact.dynamics.invariant_arcs import before, gammas_within, stable_manifold
 from singimpact.flights.rebound_law import rebound
 from singimpact.paper.figures.contact_figures import rebounded, reset
-from singimpact.paper.figures.panel import ARCS, Array, Dot, Line, Panel, Picture, Region, arc
+from singimpact.paper.figures.panel import ARCS, Dot, Line, Panel, Picture, Region, arc
 from singimpact.paper.figures.swan_figures import box, half, negative, positive, ring, shadow
 from singimpact.surface.curve import Window
 

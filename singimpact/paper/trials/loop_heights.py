@@ -9,10 +9,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
 from math import sqrt
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from singimpact.algebra.numbers import Array
 from singimpact.dynamics.chatter import chatter_limit
 from singimpact.dynamics.threshold import threshold
 from singimpact.dynamics.unfolded_swan import swan_configuration
@@ -21,7 +22,6 @@ from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.theory.fixed_points import multipliers
 
-Array = np.ndarray[Any, Any]
 RATES = ("3/10", "1/2", "4/5")
 GENERATIONS = 4
 LINES = (1e-3, 5e-4)  # h
