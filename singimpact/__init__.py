@@ -6,8 +6,7 @@ Everything public is reached from here; a name loads its room when it is first u
 from typing import TYPE_CHECKING, Any
 
 from singimpact.inputs import InputError as InputError
-from singimpact.status import Cause as Cause
-from singimpact.status import Status as Status
+from singimpact.status import Cause as Cause, Status as Status
 
 if TYPE_CHECKING:
     from singimpact import theory as theory
@@ -19,28 +18,30 @@ if TYPE_CHECKING:
     from singimpact.branches.manifold import manifold as manifold
     from singimpact.branches.transitions import transitions as transitions
     from singimpact.cases import sweep as sweep
-    from singimpact.certificates.certificate import certify as certify
-    from singimpact.certificates.certificate import read_certificate as read_certificate
+    from singimpact.certificates.certificate import certify as certify, read_certificate as read_certificate
     from singimpact.contact.points import tangency_points as tangency_points
     from singimpact.dynamics.lyapunov import lyapunov as lyapunov
     from singimpact.dynamics.threshold import threshold as threshold
-    from singimpact.impact_oscillator import ImpactOscillator as ImpactOscillator
-    from singimpact.impact_oscillator import linear as linear
-    from singimpact.impact_oscillator import read_model as read_model
-    from singimpact.impact_oscillator import shaken_wall as shaken_wall
-    from singimpact.impact_oscillator import universal as universal
+    from singimpact.impact_oscillator import (
+        ImpactOscillator as ImpactOscillator,
+        linear as linear,
+        read_model as read_model,
+        shaken_wall as shaken_wall,
+        universal as universal,
+    )
     from singimpact.paper.claims import Claims as _Claims
     from singimpact.paper.claims.verdicts import verify as verify
     from singimpact.paper.figures import figure as figure
     from singimpact.paper.sections.errata import errata as errata
-    from singimpact.scenes import Scene as Scene
-    from singimpact.scenes import plot as plot
+    from singimpact.scenes import Scene as Scene, plot as plot
     from singimpact.scenes.explore import explore as explore
-    from singimpact.studies import basins as basins
-    from singimpact.studies import bifurcation as bifurcation
-    from singimpact.studies import classify as classify
-    from singimpact.studies import grown_gamma as grown_gamma
-    from singimpact.studies import swan_points as swan_points
+    from singimpact.studies import (
+        basins as basins,
+        bifurcation as bifurcation,
+        classify as classify,
+        grown_gamma as grown_gamma,
+        swan_points as swan_points,
+    )
     from singimpact.surface.impact_surface import ImpactSurface as ImpactSurface
     from singimpact.theory import fixed_points as fixed_points
 
@@ -53,39 +54,30 @@ _ROOMS = {
     "theory": "singimpact.theory",
     "fixed_points": "singimpact.theory.fixed_points",
 }
-_HOMES = {
-    "ImpactOscillator": "singimpact.impact_oscillator",
-    "border_orbits": "singimpact.branches.border",
-    "branch": "singimpact.branches.branch",
-    "event_curve": "singimpact.branches.event_curve",
-    "homoclinic_points": "singimpact.branches.homoclinic",
-    "manifold": "singimpact.branches.manifold",
-    "linear": "singimpact.impact_oscillator",
-    "universal": "singimpact.impact_oscillator",
-    "lyapunov": "singimpact.dynamics.lyapunov",
-    "read_model": "singimpact.impact_oscillator",
-    "tangency_points": "singimpact.contact.points",
-    "shaken_wall": "singimpact.impact_oscillator",
-    "swan_points": "singimpact.studies",
-    "sweep": "singimpact.cases",
-    "certify": "singimpact.certificates.certificate",
-    "read_certificate": "singimpact.certificates.certificate",
-    "basins": "singimpact.studies",
-    "bifurcation": "singimpact.studies",
-    "classify": "singimpact.studies",
-    "grown_gamma": "singimpact.studies",
-    "transitions": "singimpact.branches.transitions",
-    "threshold": "singimpact.dynamics.threshold",
-    "ImpactSurface": "singimpact.surface.impact_surface",
-    "plot": "singimpact.scenes",
-    "explore": "singimpact.scenes.explore",
-    "Scene": "singimpact.scenes",
-    "figure": "singimpact.paper.figures",
-    "verify": "singimpact.paper.claims.verdicts",
-    "errata": "singimpact.paper.sections.errata",
-    "selftest": "singimpact.bench.selftest.run",
+_FILES = {
+    "bench.selftest.run": "selftest",
+    "branches.border": "border_orbits",
+    "branches.branch": "branch",
+    "branches.event_curve": "event_curve",
+    "branches.homoclinic": "homoclinic_points",
+    "branches.manifold": "manifold",
+    "branches.transitions": "transitions",
+    "cases": "sweep",
+    "certificates.certificate": "certify read_certificate",
+    "contact.points": "tangency_points",
+    "dynamics.lyapunov": "lyapunov",
+    "dynamics.threshold": "threshold",
+    "impact_oscillator": "ImpactOscillator linear read_model shaken_wall universal",
+    "paper.claims.verdicts": "verify",
+    "paper.figures": "figure",
+    "paper.sections.errata": "errata",
+    "scenes": "Scene plot",
+    "scenes.explore": "explore",
+    "studies": "basins bifurcation classify grown_gamma swan_points",
+    "surface.impact_surface": "ImpactSurface",
 }
-_PUBLIC = sorted(["Cause", "InputError", "Status", *_ROOMS, *_HOMES])
+_HOMES = {name: f"singimpact.{file}" for file, names in _FILES.items() for name in names.split()}
+__all__ = sorted(["Cause", "InputError", "Status", *_ROOMS, *_HOMES])
 
 
 def __getattr__(name: str) -> Any:
@@ -104,10 +96,10 @@ def _no_such(name: str) -> str:
         return f"module 'singimpact' has no attribute {name!r}"
     from singimpact.inputs import nearest
 
-    near = nearest(name, _PUBLIC)
+    near = nearest(name, __all__)
     hint = f"the nearest known are {', '.join(near)}" if near else "dir(singimpact) lists what it has"
     return f"module 'singimpact' has no attribute {name!r}: {hint}"
 
 
 def __dir__() -> list[str]:
-    return _PUBLIC
+    return __all__

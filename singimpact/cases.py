@@ -25,7 +25,7 @@ from singimpact.case_files import InMemory, kept
 from singimpact.case_journal import Record
 from singimpact.case_keys import cases_key, function_key
 from singimpact.case_pools import Place, named, place_of
-from singimpact.inputs import Unfinished, shown
+from singimpact.inputs import Unfinished, checked_keywords, shown
 from singimpact.progress import ProgressLine
 from singimpact.store import tell
 
@@ -50,6 +50,7 @@ class PoolSettings:
 POOL = PoolSettings()
 
 
+@checked_keywords
 def sweep(
     function: Callable[[Any], Any],
     cases: Iterable[Any],

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from singimpact.algebra.numbers import compare, constant
-from singimpact.inputs import InputError, checked_keywords, refuse, whole
+from singimpact.inputs import InputError, checked_keywords, checked_methods, refuse, whole
 from singimpact.oscillator.model import Oscillator
 
 if TYPE_CHECKING:
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from singimpact.oscillator.shaken_wall import ShakenWall
 
 
+@checked_methods
 class ImpactOscillator(Oscillator):
     """x'' + f(x, x') = g(t), x >= clearance, v -> -restitution v; parameters as in `Oscillator`.
 
@@ -466,6 +467,7 @@ def universal(kappa: Any, restitution: Any) -> ImpactOscillator:
     return ImpactOscillator("0", "12*kappa*(t**2 - 1)", 0, restitution, {"kappa": kappa})
 
 
+@checked_keywords
 def shaken_wall(
     f: Any, g: Any, wall: Any, restitution: Any, parameters: Mapping[str, Any] | None = None, period: Any = None
 ) -> ShakenWall:
@@ -492,6 +494,7 @@ def shaken_wall(
     return shaken_wall(f, g, wall, restitution, parameters, period, kind=ImpactOscillator)
 
 
+@checked_keywords
 def read_model(path: str | FilePath) -> ImpactOscillator:
     """The model in a TOML file with f, g, clearance, restitution and perhaps parameters and period.
 

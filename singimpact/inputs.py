@@ -5,10 +5,11 @@ from __future__ import annotations
 import difflib
 import math
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import wraps
 from numbers import Integral
-from typing import ParamSpec, TypeVar
+from types import FunctionType
+from typing import Any, ParamSpec, TypeVar
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -125,6 +126,9 @@ SYNONYMS = {
     "tau": "t",
     "out": "output",
     "n": "impacts",
+    "grid": "size",
+    "params": "parameters",
+    "rho": "restitution",
 }
 """Other names of what the package names so."""
 
@@ -157,7 +161,7 @@ def unknown(kind: str, name: str, accepted: Iterable[str]) -> InputError:
 
 
 def checked_keywords(function: Callable[P, T]) -> Callable[P, T]:
-    """The function, which refuses keywords that it does not have with a word about those that it has.
+    """The function, whose calls with other arguments than it takes are refused in a sentence.
 
     Examples
     --------
@@ -165,15 +169,38 @@ def checked_keywords(function: Callable[P, T]) -> Callable[P, T]:
     Traceback (most recent call last):
     singimpact.inputs.InputError: <lambda> has no argument 'c': give clearance
     """
-    code = function.__code__
-    names = code.co_varnames[: code.co_argcount + code.co_kwonlyargcount]
 
     @wraps(function)
-    def checked(*given: P.args, **named: P.kwargs) -> T:
-        for name in named:
-            if name not in names:
-                instead = meant(name, names) or ", ".join(names)
-                raise InputError(f"{function.__name__} has no argument {name!r}: give {instead}")
-        return function(*given, **named)
+    def checked(*values: P.args, **named: P.kwargs) -> T:
+        try:
+            return function(*values, **named)
+        except TypeError:
+            _require_arguments(function, values, named)
+            raise
 
     return checked
+
+
+def checked_methods(kind: type[T]) -> type[T]:
+    """The class, each public method of which is `checked_keywords`."""
+    for name, method in list(vars(kind).items()):
+        if isinstance(method, FunctionType) and (name == "__init__" or not name.startswith("_")):
+            setattr(kind, name, checked_keywords(method))
+    return kind
+
+
+def _require_arguments(function: Callable[..., Any], values: Sequence[Any], named: Mapping[str, Any]) -> None:
+    """Refuse arguments that a function does not take."""
+    from inspect import signature
+
+    takes = signature(function).parameters
+    names = [name for name, item in takes.items() if name != "self" and item.kind is not item.VAR_KEYWORD]
+    title = type(values[0]).__name__ if function.__name__ == "__init__" else function.__name__
+    for name in named:
+        if name not in names and len(names) + ("self" in takes) == len(takes):
+            instead = meant(name, names) or ", ".join(names) or "none"
+            raise InputError(f"{title} has no argument {name!r}: give {instead}") from None
+    try:
+        signature(function).bind(*values, **named)
+    except TypeError as error:
+        raise InputError(f"{title} takes {', '.join(names)}: {error}") from None

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from singimpact.algebra.numbers import as_float, as_fraction, constant
 from singimpact.impact_oscillator import ImpactOscillator
-from singimpact.inputs import InputError, refuse, unknown, whole
+from singimpact.inputs import InputError, checked_keywords, refuse, unknown, whole
 from singimpact.oscillator.model import Oscillator
 
 if TYPE_CHECKING:
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from singimpact.surface.curve import Curve
 
 
+@checked_keywords
 def swan_points(
     f: Any, g: Any, parameters: Mapping[str, Any] | None = None, over: str = "clearance", between: Any = None
 ) -> SwanPoints:
@@ -78,6 +79,7 @@ def clearances(between: Any) -> tuple[Fraction, Fraction]:
     return low, high
 
 
+@checked_keywords
 def basins(
     osc: Oscillator,
     window: Any = None,
@@ -118,6 +120,7 @@ def basins(
     return basins(osc, tau, v, size, executor, output, impacts)
 
 
+@checked_keywords
 def bifurcation(
     osc: Oscillator,
     over: str,
@@ -173,6 +176,7 @@ def bifurcation(
     return bifurcation(osc, over, between, points, start, impacts, kept, direction, **sweeping)
 
 
+@checked_keywords
 def classify(osc: Oscillator, window: Any = None, between: Any = None) -> Classification:
     """The singular points of p and phi on V_c': tangencies, swans, cusps, and the fold lines between them.
 
@@ -198,6 +202,7 @@ def classify(osc: Oscillator, window: Any = None, between: Any = None) -> Classi
     return classify(osc, tau, t, None if between is None else clearances(between))
 
 
+@checked_keywords
 def grown_gamma(osc: Oscillator, window: Any = None, tau: Any = None) -> list[Curve]:
     """gamma as curves: from its series at a tangency or swan point to the edge of a window of states.
 

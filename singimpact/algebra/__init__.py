@@ -20,7 +20,7 @@ _FILES = {
     "jets": "Jet JetSpace blow_up derivation divided implicit inverse_map",
     "long_sums": "LongSum Monomials Products order_key",
     "numbers": "as_float as_mpf compare constant exact float_array rational_near sign_of",
-    "parsing": "from_sympy parse",
+    "parsing": "DEFINITIONS from_sympy parse",
     "plain": "times",
     "polynomials": "Exponents",
     "precision": "balls_at series_of_any_length",

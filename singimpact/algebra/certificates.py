@@ -16,9 +16,7 @@ from typing import Any
 
 import sympy
 
-from singimpact.algebra.gathering import Certificate as Certificate
-from singimpact.algebra.gathering import collected as collected
-from singimpact.algebra.gathering import established
+from singimpact.algebra.gathering import Certificate as Certificate, collected as collected, established
 
 Box = Mapping[Any, tuple[Any, Any]]
 

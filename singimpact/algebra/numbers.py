@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from decimal import Decimal
 from fractions import Fraction
 from functools import cache
 from typing import Any
@@ -19,6 +20,7 @@ from singimpact.algebra.parsing import from_sympy, parse
 from singimpact.inputs import InputError, refuse, require_memory, shown
 
 Array = np.ndarray[Any, Any]
+EPSILON = 2.0**-52  # from 1 to the next double
 LONGEST = 1_000_000  # bits of a rational that stands for a ball
 ACCEPTED = "a finite real number, or text such as '0.3', '1/3' or 'pi/2.8'"
 
@@ -33,12 +35,12 @@ def exact(name: str, value: Any) -> Fraction:
     """
     if isinstance(value, bool | np.bool_):
         raise refuse(name, value, ACCEPTED)
-    if isinstance(value, int | float | Fraction | np.integer | np.floating):
+    if isinstance(value, int | float | Fraction | Decimal | np.integer | np.floating):
         try:
             if isinstance(value, float | np.floating):
                 return Fraction(float(value))
             # a Fraction of a numpy integer keeps numpy integers inside, and they overflow
-            return value if isinstance(value, Fraction) else Fraction(int(value))
+            return Fraction(value if isinstance(value, Fraction | Decimal) else int(value))
         except (ValueError, OverflowError):
             raise refuse(name, value, ACCEPTED) from None
     if hasattr(value, "_mpf_"):
@@ -49,7 +51,7 @@ def exact(name: str, value: Any) -> Fraction:
 
 
 def tree_of(value: Any, names: Iterable[str] = (), what: str = "expression") -> Expression:
-    """A tree from text, a sympy object, a number or a tree already made.
+    """A tree from text, a function, a sympy object, a number or a tree already made.
 
     Examples
     --------
@@ -62,9 +64,12 @@ def tree_of(value: Any, names: Iterable[str] = (), what: str = "expression") -> 
         return value
     if str(type(value).__module__).partition(".")[0] == "sympy" and hasattr(value, "args"):
         return from_sympy(value, names, what)
-    if callable(value):
-        letters = f"an expression in {', '.join(names)}" if names else "a number"
-        raise refuse(what, value, f"{letters} as text: a Python function has no derivatives that are exact")
+    if callable(value) and names:
+        from singimpact.algebra.traced import traced
+
+        return traced(value, tuple(names), what)
+    if names and not isinstance(value, int | float | Fraction | Decimal | np.number) and not hasattr(value, "_mpf_"):
+        raise refuse(what, value, f"an expression in {', '.join(names)}: text, a function, a sympy object or a number")
     return Number(exact(what, value))
 
 

@@ -7,7 +7,7 @@ text, its depth, and the size of a constant power are bounded (`Limits`).
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -28,6 +28,7 @@ from singimpact.algebra.expressions import (
     multiply,
     negate,
     power,
+    substitute,
     walk,
 )
 from singimpact.inputs import InputError, meant, shown
@@ -56,7 +57,39 @@ _TOKEN = re.compile(
     r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[^\W\d]\w*)|(?P<sign>\*\*|[-+*/(),^.]))",
     re.ASCII,
 )
-_LANGUAGE = "numbers, + - * / **, pi and " + " ".join(FUNCTIONS)
+DEFINITIONS = {
+    "sinh": "(exp(w) - exp(-w))/2",
+    "cosh": "(exp(w) + exp(-w))/2",
+    "asin": "atan(w/sqrt(1 - w**2))",
+    "acos": "pi/2 - atan(w/sqrt(1 - w**2))",
+    "asinh": "log((1 + sqrt(1 + w**2) + w)/(1 + sqrt(1 + w**2) - w))",
+    "acosh": "log(w + sqrt(w**2 - 1))",
+    "atanh": "log((1 + w)/(1 - w))/2",
+    "sec": "1/cos(w)",
+    "csc": "1/sin(w)",
+    "cot": "cos(w)/sin(w)",
+    "expm1": "exp(w) - 1",
+    "exp2": "2**w",
+    "log1p": "log(1 + w)",
+    "log2": "log(w)/log(2)",
+    "log10": "log(w)/log(10)",
+}
+"""Analytic functions in terms of `FUNCTIONS`, which are put in when an expression is read."""
+_LANGUAGE = f"numbers, + - * / **, pi and {' '.join(FUNCTIONS)} {' '.join(DEFINITIONS)}"
+SYNONYMS = {"ln": "log", "Abs": "abs", "fabs": "abs", "absolute": "abs"} | {
+    f"arc{name[1:]}": name for name in ("atan", "asin", "acos", "asinh", "acosh", "atanh")
+}
+SMOOTH = {
+    "sign": "tanh(w/eps) for sign(w)",
+    "Heaviside": "(1 + tanh(w/eps))/2 for Heaviside(w)",
+    "Max": "(a + b + sqrt((a - b)**2 + eps**2))/2 for Max(a, b)",
+    "Min": "(a + b - sqrt((a - b)**2 + eps**2))/2 for Min(a, b)",
+    "Piecewise": "left + (right - left)*(1 + tanh(w/eps))/2 for the two sides of w = 0",
+}
+"""What stands for functions that are not smooth, with a small number eps."""
+ROUGH = {"sgn": "sign", "heaviside": "Heaviside", "where": "Piecewise"} | {
+    name: name.title()[:3] for name in ("max", "min", "maximum", "minimum")
+}
 
 
 def parse(text: str, names: Iterable[str] = (), what: str = "expression") -> Expression:
@@ -79,11 +112,38 @@ def parse(text: str, names: Iterable[str] = (), what: str = "expression") -> Exp
     >>> parse("__import__('os')")
     Traceback (most recent call last):
     singimpact.inputs.InputError: expression = "__import__('os')" is not accepted: unknown function '__import__'; \
-accepted are numbers, + - * / **, pi and sin cos tan exp log sqrt tanh atan abs
+accepted are numbers, + - * / **, pi and sin cos tan exp log sqrt tanh atan abs sinh cosh asin acos asinh acosh atanh \
+sec csc cot expm1 exp2 log1p log2 log10
     """
     if len(text) > LIMITS.characters:
         raise InputError(f"{what} has {len(text)} characters: at most {LIMITS.characters} are accepted")
     return _Parser(text, tuple(names), what).whole()
+
+
+def defined(name: str) -> Callable[[Expression], Expression] | None:
+    """A function of trees by its name, its own or another; None for one that is not accepted.
+
+    Examples
+    --------
+    >>> sinh = defined("sinh")
+    >>> print(sinh(Name("x")), defined("gamma"))
+    0.5*(exp(x) - exp(-x)) None
+    """
+    name = SYNONYMS.get(name, name)
+    if name in FUNCTIONS:
+        return lambda argument: Call(name, argument)
+    if name not in DEFINITIONS:
+        return None
+    definition = parse(DEFINITIONS[name], ("w",))
+    return lambda argument: substitute(definition, {"w": argument})
+
+
+def refused_function(name: str) -> str:
+    """The sentence about a function that is not accepted."""
+    name = ROUGH.get(name, name)
+    if name in SMOOTH:
+        return f"{name} is not smooth: write {SMOOTH[name]}, with a small number in place of eps, such as 0.01"
+    return f"unknown function {shown(name)}; accepted are {_LANGUAGE}"
 
 
 class _Parser:
@@ -237,13 +297,16 @@ class _Parser:
         if token == "root" and self.take("("):
             return self.root()
         if self.kind == "sign" and self.token == "(":
-            if token not in FUNCTIONS:
-                raise self.refusal(f"unknown function {shown(token)}; accepted are {_LANGUAGE}")
+            function = defined(token)
+            if function is None:
+                raise self.refusal(refused_function(token))
             self.advance()
             argument = self.sum()
             if not self.take(")"):
                 raise self.refusal(f"{token} takes one argument" if self.token == "," else "a bracket is not closed")
-            return Call(token, argument)
+            return function(argument)
+        if self.token == "." and token in ("np", "numpy", "math", "sympy", "sp", "cmath"):
+            raise self.refusal(f"write the names of functions and numbers without {token}., as in cos(2*t)")
         if token in self.names:
             return Name(token)
         if token == "pi":
@@ -256,6 +319,8 @@ def unknown_name(token: str, names: Iterable[str]) -> str:
     known = list(names)
     instead = meant(token, known)
     hint = f"; did you mean {instead}?" if instead else ""
+    if token == "t" and "xdot" in known:
+        hint = "; what depends on t is g, and a force that depends on x and t together is not accepted"
     listed = f"known names are {', '.join(known)}" if known else "a number is expected here"
     return f"the symbol {shown(token)} has no value ({listed}){hint}"
 
@@ -295,9 +360,6 @@ def _first(tree: Any, count: int) -> Iterable[Any]:
         stack.extend(part.args)
 
 
-_SYMPY_FUNCTIONS = {name: name for name in FUNCTIONS} | {"Abs": "abs"}
-
-
 def _convert(tree: Any, names: tuple[str, ...], depth: int) -> Expression:
     kind = type(tree).__name__
     if depth > LIMITS.depth:
@@ -324,9 +386,11 @@ def _convert(tree: Any, names: tuple[str, ...], depth: int) -> Expression:
     if tree.is_Pow:
         half = isinstance(parts[1], Number) and parts[1].value == Fraction(1, 2)
         return Call("sqrt", parts[0]) if half else bounded_power(parts[0], parts[1])
-    if kind in _SYMPY_FUNCTIONS and len(parts) == 1:
-        return Call(_SYMPY_FUNCTIONS[kind], parts[0])
-    raise InputError(f"{shown(kind)} is not one of {_LANGUAGE}")
+    function = defined(kind) if len(parts) == 1 else None
+    if function is None:
+        rough = ROUGH.get(kind, kind) in SMOOTH
+        raise InputError(refused_function(kind) if rough else f"{shown(kind)} is not one of {_LANGUAGE}")
+    return function(parts[0])
 
 
 def _exact_float(value: Any) -> Fraction:

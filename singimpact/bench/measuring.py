@@ -16,12 +16,11 @@ from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.numbers import EPSILON
 from singimpact.inputs import InputError
 
 if sys.platform != "win32":
     import resource
-
-EPSILON = 2.0**-52
 
 
 class NotInstalled(InputError):

@@ -13,14 +13,12 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.numbers import Array
+from singimpact.algebra.numbers import EPSILON, Array
 from singimpact.algebra.precision import balls_at
 from singimpact.bench.truth.first_hit import Cubic, Linear, first_hit
 from singimpact.cases import sweep
 from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.status import Status
-
-EPSILON = 2.0**-52
 
 
 @dataclass(frozen=True)

@@ -14,9 +14,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from singimpact.algebra.numbers import Array
+from singimpact.algebra.numbers import EPSILON, Array
 from singimpact.algebra.precision import balls_at
-from singimpact.bench.steep_states import DRAW, EPSILON, drawn
+from singimpact.bench.steep_states import DRAW, drawn
 from singimpact.bench.truth import enclosed_flight
 from singimpact.bench.truth.enclosed_flight import Refused
 from singimpact.bench.truth.graded_steps import FINENESS, HIT, MISS, UNDECIDED

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from singimpact.algebra.numbers import Array
+from singimpact.algebra.numbers import EPSILON, Array
 from singimpact.bench.steep_families import FAMILIES, NAMES, SMOOTH, STEEP, Family
 from singimpact.bench.truth import graded_steps
 from singimpact.bench.truth.graded_steps import HIT, MISS, PHASE, Motion
@@ -23,7 +23,6 @@ from singimpact.cases import sweep
 from singimpact.impact_oscillator import ImpactOscillator
 from singimpact.status import Status
 
-EPSILON = 2.0**-52
 Generator = np.random.Generator
 
 

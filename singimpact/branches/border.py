@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.certified import text_of
-from singimpact.algebra.numbers import as_float, compare
+from singimpact.algebra.numbers import EPSILON, as_float, compare
 from singimpact.algebra.solving import halved
 from singimpact.branches.border_digits import in_digits
 from singimpact.branches.branch import interval
@@ -25,14 +25,12 @@ from singimpact.branches.released import Released, Releases, Return
 from singimpact.dynamics.long_run import lift_offs
 from singimpact.dynamics.threshold import threshold
 from singimpact.flights.impact_map import checked_digits
-from singimpact.inputs import InputError, refuse, whole
+from singimpact.inputs import InputError, checked_keywords, refuse, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import RESTITUTION, value_of, with_number
 from singimpact.result import Result, Results
 from singimpact.status import Status
 from singimpact.surface.curve import window_ends
-
-EPSILON = 2.0**-52
 
 
 @dataclass(frozen=True)
@@ -150,6 +148,7 @@ class BorderOrbits(Results, list[BorderOrbit]):
         self.complete, self.notes = complete, notes
 
 
+@checked_keywords
 def border_orbits(
     osc: Oscillator,
     over: str = "clearance",

@@ -14,7 +14,7 @@ from singimpact.branches.events import KINDS, Event, own_events
 from singimpact.branches.orbit_curve import SETTINGS, places
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.solutions import closing_of, orbit_of
-from singimpact.inputs import InputError, refuse, whole
+from singimpact.inputs import InputError, checked_keywords, refuse, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION, value_of, with_number
 from singimpact.result import Result, numbered
@@ -105,6 +105,7 @@ class Branch(Result):
         return "\n".join([*lines, *(f"  {note}" for note in self.notes)]) + ">"
 
 
+@checked_keywords
 def branch(
     orbit: PeriodicOrbit,
     over: str = CLEARANCE,

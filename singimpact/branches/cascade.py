@@ -16,7 +16,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from singimpact.algebra.balls import as_rational
-from singimpact.algebra.numbers import Array, exact
+from singimpact.algebra.numbers import EPSILON, Array, exact
 from singimpact.algebra.precision import digits_at, for_user
 from singimpact.algebra.solving import halved
 from singimpact.branches.border_digits import DigitOrbits
@@ -27,8 +27,6 @@ from singimpact.inputs import InputError
 from singimpact.oscillator.model import Oscillator
 from singimpact.result import Result
 from singimpact.theory.fixed_points import tangency
-
-EPSILON = 2.0**-52
 
 
 @dataclass(frozen=True)

@@ -17,8 +17,7 @@ import numpy as np
 
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.expressions import evaluate
-from singimpact.algebra.isolated_zeros import SETTINGS as BOXES
-from singimpact.algebra.isolated_zeros import IsolatedZeros, Place, zeros_of
+from singimpact.algebra.isolated_zeros import SETTINGS as BOXES, IsolatedZeros, Place, zeros_of
 from singimpact.algebra.numbers import Array, as_float
 from singimpact.algebra.precision import balls_at, series_of_any_length
 from singimpact.flights.enclosures.equation import Equation, Refused, programs_of

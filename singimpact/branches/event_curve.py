@@ -16,7 +16,7 @@ from singimpact.branches.events import KINDS, Event
 from singimpact.branches.events.orbit_state import OrbitState
 from singimpact.branches.orbit_curve import SETTINGS, OrbitCurve, places
 from singimpact.branches.solutions import AnyClosing, closing_of
-from singimpact.inputs import refuse, whole
+from singimpact.inputs import checked_keywords, refuse, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION, value_of, with_number
 from singimpact.result import Result, numbered
@@ -102,6 +102,7 @@ class EventCurve(Result):
         return "\n".join([*lines, *(f"  {note}" for note in self.notes)]) + ">"
 
 
+@checked_keywords
 def event_curve(
     event: Event,
     over: Sequence[str] = (CLEARANCE, RESTITUTION),

@@ -23,7 +23,7 @@ from singimpact.dynamics.growth import Piece
 from singimpact.dynamics.invariant_arcs import before, model_step
 from singimpact.flights.derivative import derivative
 from singimpact.flights.impact_map import checked_digits
-from singimpact.inputs import InputError, refuse
+from singimpact.inputs import InputError, checked_keywords, refuse
 from singimpact.result import Result, Results
 from singimpact.surface.curve import RESOLUTION
 
@@ -172,6 +172,7 @@ class Crossings(Results, list[Crossing]):
         self.notes, self.manifolds = notes, manifolds
 
 
+@checked_keywords
 def homoclinic_points(
     saddle: PeriodicOrbit,
     to: PeriodicOrbit | None = None,

@@ -17,7 +17,7 @@ from singimpact.branches.solutions import orbit_period
 from singimpact.dynamics.growth import LEFT, LOST, NATURAL, TORN, Carried, Piece
 from singimpact.dynamics.invariant_arcs import before, model_step
 from singimpact.flights.flight_count import counted
-from singimpact.inputs import refuse
+from singimpact.inputs import checked_keywords, refuse
 from singimpact.oscillator.wall_acceleration import acceleration, largest_push
 from singimpact.result import Result
 from singimpact.surface.curve import RESOLUTION, STATES, Curve, Mark, Window
@@ -160,6 +160,7 @@ def _names(piece: Curve) -> list[str]:
     return names
 
 
+@checked_keywords
 def manifold(
     saddle: PeriodicOrbit, stable: bool = True, *, v: Any = None, length: Any = 50, resolution: Any = RESOLUTION.usual
 ) -> Manifold:

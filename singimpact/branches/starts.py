@@ -28,8 +28,7 @@ from singimpact.algebra.analytic import Recorder
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.expressions import Expression, Power, add, evaluate, multiply, number, substitute, subtract
-from singimpact.algebra.isolated_zeros import SETTINGS as BOXES
-from singimpact.algebra.isolated_zeros import IsolatedZeros, isolated_zeros
+from singimpact.algebra.isolated_zeros import SETTINGS as BOXES, IsolatedZeros, isolated_zeros
 from singimpact.algebra.numbers import Array, as_float
 from singimpact.algebra.precision import balls_at
 from singimpact.algebra.rings import DOUBLES

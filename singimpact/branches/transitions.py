@@ -20,14 +20,13 @@ from singimpact.branches.events import Event
 from singimpact.branches.orbits import PeriodicOrbit, same_states
 from singimpact.branches.periodic import periodic
 from singimpact.dynamics.basins_of_attraction import Basins, basins
-from singimpact.inputs import InputError, refuse, whole
+from singimpact.inputs import InputError, checked_keywords, refuse, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import RESTITUTION, with_number
 from singimpact.oscillator.wall_acceleration import largest_push
 from singimpact.surface.classification import default_window
 from singimpact.surface.curve import window_ends
-from singimpact.surface.outline_transitions import Transitions
-from singimpact.surface.outline_transitions import transitions as transitions_of_outline
+from singimpact.surface.outline_transitions import Transitions, transitions as transitions_of_outline
 from singimpact.surface.swan_families import Transition
 
 SEEN_ALONE = ("tacnode", "triple point")
@@ -199,6 +198,7 @@ class BothSides:
     basins: tuple[Basins, Basins]
 
 
+@checked_keywords
 def transitions(
     osc: Oscillator,
     over: str = "clearance",
@@ -307,7 +307,12 @@ class _Search:
         # equal values, of orbits that meet at a graze, may differ by rounding
         changes = sorted(self._changes(), key=lambda change: (float(f"{change.value:.12g}"), change.n, change.k))
         intervals = tuple(
-            Interval(one, other, tuple(at_middles[(one + other) / 2]), tuple(_placed(changes, one, other, number)))
+            Interval(
+                one,
+                other,
+                tuple(at_middles[(one + other) / 2]),
+                tuple(replace(change, interval=number) for change in changes if one <= change.value < other),
+            )
             for number, (one, other) in enumerate(pairwise(edges))
         )
         note = (
@@ -379,10 +384,6 @@ def _sides(followed: Branch, event: Event) -> tuple[tuple[str, ...], tuple[str, 
         word = _word(followed.multipliers[i]) if followed.visible[i] else WORDS[3]
         (below if followed.parameter[i] < event.parameter else above).append(word)
     return tuple(below), tuple(above)
-
-
-def _placed(changes: list[OrbitChange], low: float, high: float, place: int) -> Iterable[OrbitChange]:
-    return [replace(change, interval=place) for change in changes if low <= change.value < high]
 
 
 def _word(multipliers: Any) -> str:

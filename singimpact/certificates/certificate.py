@@ -22,7 +22,7 @@ from singimpact.certificates.checker import KINDS, SCHEMA, SECONDS, TOUCHING, Re
 from singimpact.dynamics.chatter import ChatterLimit
 from singimpact.dynamics.gamma_proof.proof import CertifiedGamma
 from singimpact.flights.results import CertifiedImpact, Flight
-from singimpact.inputs import InputError, refuse, whole
+from singimpact.inputs import InputError, checked_keywords, refuse, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
 from singimpact.store import write_text
@@ -78,6 +78,7 @@ class Certificate:
         return f"<certificate of {sentence(self.content)}>"
 
 
+@checked_keywords
 def certify(result: Any) -> Certificate:
     """The certificate of a certified result.
 
@@ -291,6 +292,7 @@ def _wider(number: Certified) -> dict[str, str]:
     return {"value": texts["value"], "radius": f"{float(radius):.3g}"}
 
 
+@checked_keywords
 def read_certificate(path: Any, seconds: int = SECONDS) -> Certificate:
     """A certificate from a file, once the second program has accepted it within so many seconds of CPU.
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from singimpact.cli.output import as_json_text, columns, emit, markdown, output_options, save
+from singimpact.cli.output import as_json_text, columns, count_option, emit, markdown, output_options, page_format, save
 from singimpact.inputs import InputError, unknown
 from singimpact.progress import ProgressLine
 from singimpact.store import folder
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
 LISTED = 5  # states of each kind that are written out, each of another family
 TIMES = ("seconds", "true_seconds")
+COUNTS = ("states", "crossed", "wrong", "unresolved", "unresolved_steep", "undecided")
 
 
 @dataclass(frozen=True)
@@ -94,61 +95,35 @@ def _is_wrong(rows: Sequence[Row], balls: Enclosures) -> bool:
 
 
 def _table(rows: Sequence[Row]) -> str:
-    header = [
-        "family",
-        "states",
-        "crossed",
-        "wrong",
-        "unresolved, K <= 1e3",
-        "above",
-        "truth undecided",
-        "worst error",
-        "us a state",
-        "of the truth",
-    ]
+    header = (
+        "family|states|crossed|wrong|unresolved, K <= 1e3|above|truth undecided|worst error|us a state|of the truth"
+    )
     cells = []
     for kind in (True, False):
         kin = [row for row in rows if row.steep == kind]
-        cells += [
-            [
-                row.family,
-                str(row.states),
-                f"{row.crossed / row.states:.2f}" if kind else "-",
-                str(row.wrong),
-                str(row.unresolved),
-                str(row.unresolved_steep),
-                str(row.undecided),
-                f"{row.worst_error:.1e}",
-                f"{1e6 * row.seconds:.0f}",
-                f"{1e6 * row.true_seconds:.0f}",
-            ]
-            for row in kin
-        ]
+        cells += [_cells(row) for row in kin]
         if kin:
-            cells.append(_total("all steep" if kind else "all smooth", kin))
+            cells.append(_cells(_total("all steep" if kind else "all smooth", kin)))
     note = (
         "wrong: relative error of a flight time above max(1e-9, 100 kappa epsilon), or another end of the flight.\n"
         "worst error: largest relative error of a flight time that is not wrong. crossed: part of the flights."
     )
-    return columns(header, cells) + "\n" + note
+    return columns(header.split("|"), cells) + "\n" + note
 
 
-def _total(name: str, rows: Sequence[Row]) -> list[str]:
-    def total(field: str) -> int:
-        return sum(getattr(row, field) for row in rows)
+def _cells(row: Row) -> list[str]:
+    crossed = f"{row.crossed / row.states:.2f}" if row.steep else "-"
+    counts = row.wrong, row.unresolved, row.unresolved_steep, row.undecided
+    times = row.seconds, row.true_seconds
+    shown = [*map(str, counts), f"{row.worst_error:.1e}", *(f"{1e6 * seconds:.0f}" for seconds in times)]
+    return [row.family, str(row.states), crossed, *shown]
 
-    fields = ("wrong", "unresolved", "unresolved_steep", "undecided")
-    states, worst = total("states"), max(row.worst_error for row in rows)
-    seconds = [1e6 * sum(getattr(row, field) * row.states for row in rows) / states for field in TIMES]
-    crossed_share = f"{total('crossed') / states:.2f}" if rows[0].steep else "-"
-    return [
-        name,
-        str(states),
-        crossed_share,
-        *(str(total(field)) for field in fields),
-        f"{worst:.1e}",
-        *(f"{figure:.0f}" for figure in seconds),
-    ]
+
+def _total(name: str, rows: Sequence[Row]) -> Row:
+    """All states of some families as those of one."""
+    sums = {field: sum(getattr(row, field) for row in rows) for field in COUNTS}
+    means = {field: sum(getattr(row, field) * row.states for row in rows) / sums["states"] for field in TIMES}
+    return replace(rows[0], family=name, worst_error=max(row.worst_error for row in rows), **sums, **means)
 
 
 def _balls(balls: Enclosures) -> str:
@@ -180,15 +155,12 @@ def _pairs(name: str, pairs: Pairs) -> str:
         f"digits={digits}: {1e3 * median:.0f} ms of CPU a unit of flight time, at most {1e3 * most:.0f}"
         for digits, (median, most) in ((20, pairs.seconds), (40, pairs.more_seconds))
     )
+    cases = f" (cases {', '.join(map(str, pairs.refused[:9]))})" if pairs.refused else ""
     return (
         f"digits=20 and digits=40: {pairs.states} {name} states, {pairs.enclosed} enclosed by both, "
-        f"{pairs.misses} proved not to hit, {len(pairs.refused)} refused{_cases(pairs.refused)}, "
+        f"{pairs.misses} proved not to hit, {len(pairs.refused)} refused{cases}, "
         f"{pairs.apart} with the truth outside a radius\n{costs}"
     )
-
-
-def _cases(numbers: Sequence[int]) -> str:
-    return f" (cases {', '.join(map(str, numbers[:9]))})" if numbers else ""
 
 
 def _estimate(name: str, given: Estimate | None) -> str:
@@ -260,14 +232,7 @@ if TYPE_CHECKING:
 @click.option("--quick", is_flag=True, help="Fewer cases, states and rounds, within two minutes.")
 @click.option("--plots", metavar="DIR", help="Write a picture of time against error for each group into this folder.")
 @click.option("--picture", type=click.Choice(["png", "pdf", "svg"]), default="png", show_default=True)
-@click.option(
-    "--format",
-    "form",
-    type=click.Choice(["text", "markdown", "page"]),
-    default="text",
-    show_default=True,
-    help="`page` writes the page of the documentation, with the pictures of --plots.",
-)
+@page_format(", with the pictures of --plots")
 @click.option("--states", type=click.IntRange(1, 10**9), default=100_000, show_default=True, help="How many states.")
 @click.option("--seed", type=click.IntRange(0), default=0, show_default=True, help="Seed of the random states.")
 @click.option("--workers", type=click.IntRange(1, 1024), help="Processes.  [default: one for each core]")
@@ -279,28 +244,10 @@ if TYPE_CHECKING:
     show_default=True,
     help="Of random states: linear and cubic, or steep layers.",
 )
-@click.option("--balls", type=click.IntRange(0), default=1000, show_default=True, help="Steep states flown in balls.")
-@click.option(
-    "--digits-checks",
-    type=click.IntRange(0),
-    default=100,
-    show_default=True,
-    help="States in balls that are also flown with digits=20.",
-)
-@click.option(
-    "--digit-pairs",
-    type=click.IntRange(0),
-    default=200,
-    show_default=True,
-    help="Steep states enclosed twice, with digits=20 and digits=40.",
-)
-@click.option(
-    "--smooth-pairs",
-    type=click.IntRange(0),
-    default=0,
-    show_default=True,
-    help="Smooth states enclosed twice, as well.",
-)
+@count_option("--balls", 1000, "Steep states flown in balls.")
+@count_option("--digits-checks", 100, "States in balls that are also flown with digits=20.")
+@count_option("--digit-pairs", 200, "Steep states enclosed twice, with digits=20 and digits=40.")
+@count_option("--smooth-pairs", 0, "Smooth states enclosed twice, as well.")
 @click.option("--store", is_flag=True, help="Store the ratios of the group limit in place of those of the package.")
 @output_options
 def command(

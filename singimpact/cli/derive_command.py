@@ -97,7 +97,7 @@ def _series(request: SeriesRequest, form: str, output: str | None) -> None:
     """The series as text to standard output, or as files in the folder."""
     from singimpact.documents.rendering import as_text
     from singimpact.documents.series_documents import series_section, series_text
-    from singimpact.paper.sections.meaning_of_letters import NOTATION
+    from singimpact.paper.sections import NOTATION
     from singimpact.store import written
 
     if form in ("sympy", "numpy", "json"):

@@ -10,17 +10,7 @@ from singimpact.cli.model_options import model_options, take_model
 from singimpact.cli.output import as_json_text, emit, lines_of, output_options
 from singimpact.status import Status
 
-SHOWN = (
-    "exponents",
-    "error",
-    "per_impact",
-    "impacts",
-    "time",
-    "superstable",
-    "status",
-    "transient",
-    "converged",
-)
+SHOWN = ("exponents", "error", "per_impact", "impacts", "time", "superstable", "status", "transient", "converged")
 """Of the result, in JSON."""
 
 

@@ -26,6 +26,17 @@ def output_options(function: Function) -> Function:
     return click.option("--json", "as_json", is_flag=True, help="Print JSON.")(function)
 
 
+def page_format(more: str = "") -> Callable[[Function], Function]:
+    """The option ``--format`` of a command that also writes a page of the documentation."""
+    kinds, told = click.Choice(["text", "markdown", "page"]), f"`page` writes the page of the documentation{more}."
+    return click.option("--format", "form", type=kinds, default="text", show_default=True, help=told)
+
+
+def count_option(name: str, default: int, told: str) -> Callable[[Function], Function]:
+    """An option that is a number of things, 0 or more."""
+    return click.option(name, type=click.IntRange(0), default=default, show_default=True, help=told)
+
+
 def _checked(ctx: click.Context, option: click.Parameter, path: str | None) -> str | None:  # noqa: ARG001
     """Check the output path before the computation, not after it."""
     if path is not None:

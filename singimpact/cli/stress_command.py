@@ -6,7 +6,7 @@ import sys
 
 import click
 
-from singimpact.cli.output import as_json_text, columns, emit, markdown, output_options
+from singimpact.cli.output import as_json_text, columns, emit, markdown, output_options, page_format
 from singimpact.progress import ProgressLine
 
 
@@ -14,14 +14,7 @@ from singimpact.progress import ProgressLine
 @click.argument("functions", metavar="[FUNCTION]...", nargs=-1)
 @click.option("--place", "limit", metavar="PLACE", help="One row of the table alone, such as 'a -> 0'.")
 @click.option("--quick", is_flag=True, help="Fewer points in every sequence.")
-@click.option(
-    "--format",
-    "form",
-    type=click.Choice(["text", "markdown", "page"]),
-    default="text",
-    show_default=True,
-    help="`page` writes the page of the documentation.",
-)
+@page_format()
 @output_options
 def command(
     functions: tuple[str, ...], limit: str | None, quick: bool, form: str, as_json: bool, output: str | None

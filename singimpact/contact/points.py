@@ -18,7 +18,7 @@ from singimpact.algebra.isolated_zeros import isolate
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.precision import Ladder, balls_at, digits_at, for_user, kept_property
 from singimpact.contact.contact import acceleration
-from singimpact.inputs import InputError, refuse
+from singimpact.inputs import InputError, checked_keywords, refuse
 from singimpact.oscillator.model import Oscillator
 from singimpact.result import Result, Results
 
@@ -116,6 +116,7 @@ class TangencyPoints(Results, tuple[TangencyPoint, ...]):
 KINDS = {1: "gamma", -1: "foliation"}
 
 
+@checked_keywords
 def tangency_points(oscillator: Oscillator, digits: int = 30) -> TangencyPoints:
     """The zeros of a_c over one period [0, T), or all real zeros when g is a polynomial.
 

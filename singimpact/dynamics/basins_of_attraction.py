@@ -28,8 +28,7 @@ from singimpact.dynamics.attractors import (
     within,
 )
 from singimpact.dynamics.long_run import futures, lift_offs, settled
-from singimpact.dynamics.settling import SETTINGS as SETTLING
-from singimpact.dynamics.settling import Study, classified, classify, parted, settles
+from singimpact.dynamics.settling import SETTINGS as SETTLING, Study, classified, classify, parted, settles
 from singimpact.flights.horizons import horizon_of
 from singimpact.flights.orbits import iterate
 from singimpact.inputs import refuse, whole

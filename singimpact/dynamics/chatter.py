@@ -12,7 +12,7 @@ import numpy as np
 
 from singimpact.algebra.certified import Certified
 from singimpact.algebra.expressions import Expression, names_in
-from singimpact.algebra.numbers import as_float, as_mpf, compare
+from singimpact.algebra.numbers import EPSILON, as_float, as_mpf, compare
 from singimpact.algebra.precision import bits_at, digits_at, for_user
 from singimpact.algebra.rings import Multiprecision
 from singimpact.contact.contact import Contact
@@ -42,7 +42,6 @@ from singimpact.result import Result, in_words
 from singimpact.status import Cause, Status, status_array
 from singimpact.theory.completion import by_velocity
 
-EPSILON = 2.0**-52
 ENDED = {
     COMPLETED: (Status.complete, Cause.decided),
     LIFTED: (Status.lifts_off, Cause.decided),

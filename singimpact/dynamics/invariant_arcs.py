@@ -14,8 +14,7 @@ import numpy as np
 from singimpact.algebra.expressions import names_in
 from singimpact.algebra.numbers import Array, as_float
 from singimpact.contact.points import tangency_points
-from singimpact.dynamics.growth import SETTINGS as GROWTH
-from singimpact.dynamics.growth import Carried, Piece, adds, held
+from singimpact.dynamics.growth import SETTINGS as GROWTH, Carried, Piece, adds, held
 from singimpact.flights.impact_map import first_hit
 from singimpact.flights.inverse_map import backwards, inverse_map
 from singimpact.inputs import InputError, refuse

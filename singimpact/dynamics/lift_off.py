@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.expressions import Number, number, subtract
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import EPSILON, as_float
 from singimpact.flights.bind import over_floats
 from singimpact.flights.interpreted import workspace
 from singimpact.flights.kernels.roots import first_root
@@ -20,7 +20,6 @@ from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import resting_force
 
 ORDER = 22
-EPSILON = 2.0**-52
 SAME = 4 * EPSILON
 """Lift-offs whose phases differ by at most this, relative, are one: both are doubles next to one zero of a_c."""
 

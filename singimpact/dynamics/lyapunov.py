@@ -25,7 +25,7 @@ from singimpact.flights.impact_map import impact_map
 from singimpact.flights.orbits import Segment, orbit_segment
 from singimpact.flights.rebound_law import rebound_slope
 from singimpact.flights.states import States
-from singimpact.inputs import InputError, refuse, shown, whole
+from singimpact.inputs import InputError, checked_keywords, refuse, shown, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.result import Result
 from singimpact.status import Status
@@ -111,6 +111,7 @@ class Lyapunov(Result):
         return f"Lyapunov({each} per unit of time, {self.impacts} impacts after {self.transient}{ended}{doubt})"
 
 
+@checked_keywords
 def lyapunov(osc: Oscillator, tau: Any, v: Any, impacts: int = 10_000, *, transient: int | None = None) -> Lyapunov:
     """The Lyapunov exponents of the orbit of a state.
 

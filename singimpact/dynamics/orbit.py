@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.expressions import subtract
-from singimpact.algebra.numbers import Array, as_float, constant, float_array
+from singimpact.algebra.numbers import EPSILON, Array, as_float, constant, float_array
 from singimpact.dynamics.chatter import ENDING, chatter_left, impacts_until
 from singimpact.dynamics.lift_off import periods_between, release
 from singimpact.dynamics.sampling import Section, sampled
@@ -26,8 +26,6 @@ from singimpact.inputs import InputError, refuse, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.result import Result
 from singimpact.status import Status
-
-EPSILON = 2.0**-52
 
 
 @dataclass(frozen=True)

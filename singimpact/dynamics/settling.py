@@ -22,6 +22,7 @@ from singimpact.dynamics.attractors import (
     GONE,
     OTHER,
     SENSITIVE,
+    SETTINGS as ATTRACTORS,
     STUCK,
     Attractor,
     apart,
@@ -29,7 +30,6 @@ from singimpact.dynamics.attractors import (
     closing_orbits,
     new_attractors,
 )
-from singimpact.dynamics.attractors import SETTINGS as ATTRACTORS
 from singimpact.dynamics.long_run import chaotic, next_lift_off
 from singimpact.dynamics.remaining import rest_after
 from singimpact.flights.orbits import iterate

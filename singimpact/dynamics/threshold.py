@@ -12,7 +12,7 @@ import numpy as np
 
 from singimpact.algebra.balls import Balls, as_rational
 from singimpact.algebra.expressions import Expression
-from singimpact.algebra.numbers import Array, as_float, as_mpf, compare, constant
+from singimpact.algebra.numbers import EPSILON, Array, as_float, as_mpf, compare, constant
 from singimpact.algebra.precision import digits_at, for_user
 from singimpact.contact.zero_ahead import ContactZero, next_zero
 from singimpact.dynamics import enclosed
@@ -24,15 +24,13 @@ from singimpact.flights.impact_map import checked_digits, impact_map
 from singimpact.flights.kernels.gamma import TERMS_OF_GAMMA
 from singimpact.flights.orbits import orbit_segment
 from singimpact.flights.states import require_room
-from singimpact.inputs import InputError, whole
+from singimpact.inputs import InputError, checked_keywords, whole
 from singimpact.oscillator.model import Oscillator, require_smooth_rho
 from singimpact.oscillator.wall_acceleration import acceleration, sign_of_acceleration
 from singimpact.result import Result, in_words
 from singimpact.status import Status
 from singimpact.theory.contact_points import Place
 from singimpact.theory.formulas import curve_at
-
-EPSILON = 2.0**-52
 
 
 @dataclass(frozen=True)
@@ -84,6 +82,7 @@ class Threshold(Result):
     __repr__ = in_words
 
 
+@checked_keywords
 def threshold(osc: Oscillator, tau: Any, *, digits: int | None = None, impacts: int = SEARCH.impacts) -> Threshold:
     """The velocity on gamma at tau: its orbit converges to the next zero of a_c.
 

@@ -82,7 +82,8 @@ def normal_form(w: Jet, power: int) -> NormalForm:
         for i, jet in enumerate(parts):
             if missing:
                 jet[(n, 0)] = missing[0]
-                missing = _less(missing, missing[0], powers[i])
+                # (missing - missing[0] series)/t: the constant terms cancel
+                missing = [value - missing[0] * term for value, term in zip(missing, powers[i], strict=False)][1:]
         for k, value in enumerate(_quotient(missing, powers[power - 1], ring)):
             step = value * ring.rational(Fraction(1, power))
             source[(n, k)] = source[(n, k)] + step if (n, k) in source else step
@@ -124,11 +125,6 @@ def _powers(series: Sequence[Any], count: int, ring: Any) -> list[list[Any]]:
         last = found[-1]
         found.append([sum((last[i] * series[k - i] for i in range(k + 1)), zero) for k in range(len(series))])
     return found
-
-
-def _less(missing: Sequence[Any], factor: Any, series: Sequence[Any]) -> list[Any]:
-    """(missing - factor series)/t, where the constant terms cancel."""
-    return [value - factor * power for value, power in zip(missing, series, strict=False)][1:]
 
 
 def _quotient(above: Sequence[Any], below: Sequence[Any], ring: Any) -> list[Any]:

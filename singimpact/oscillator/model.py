@@ -14,7 +14,7 @@ from singimpact.algebra.expressions import FUNCTIONS, Call, Expression, names_in
 from singimpact.algebra.numbers import constant, tree_of
 from singimpact.algebra.puiseux import Puiseux
 from singimpact.algebra.rings import to_sympy
-from singimpact.inputs import InputError, refuse, shown, unknown
+from singimpact.inputs import InputError, checked_methods, refuse, shown, unknown
 from singimpact.oscillator import rebound
 from singimpact.oscillator.period import checked_period, period_of
 from singimpact.store import read_bounded
@@ -24,12 +24,13 @@ FIELDS = ("f", "g", "clearance", "restitution", "parameters", "period")
 RESERVED = {*STATE, "t", "v", "pi", *FUNCTIONS}
 
 
+@checked_methods
 class Oscillator:
     """x'' + f(x, x') = g(t), x >= clearance, v -> -restitution v, or v -> rho(v).
 
     Parameters
     ----------
-    f : expression in x, xdot and the parameters; text, sympy or a number.
+    f : expression in x, xdot and the parameters: text, a Python function, sympy or a number.
     g : expression in t and the parameters.
     clearance : number, the obstacle's place; finite.
     restitution : number r in (0, 1], for v -> -r v; or an expression rho in the velocity v before the impact and the
@@ -208,11 +209,12 @@ def _rebuilt(kind: type[Oscillator], fields: dict[str, Any]) -> Oscillator:
 def _parameters(given: Mapping[str, Any]) -> dict[str, Expression]:
     if not isinstance(given, Mapping):
         raise refuse("parameters", given, "a mapping from names to numbers, such as {'omega': 1.7}")
-    for name in given:
+    named: dict[Any, Any] = {getattr(name, "name", name): value for name, value in given.items()}  # sympy's Symbols
+    for name in named:
         if not isinstance(name, str) or not (name.isidentifier() and name.isascii()) or name in RESERVED:
             letters = f"a name of letters a to z, digits and _ other than {', '.join(sorted(RESERVED))}"
             raise refuse("parameter name", name, letters)
-    return {name: constant(name, value) for name, value in given.items()}
+    return {name: constant(name, value) for name, value in named.items()}
 
 
 def require_smooth_text(tree: Expression, what: str) -> None:

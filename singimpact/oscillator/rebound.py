@@ -30,7 +30,7 @@ def read(value: Any, parameters: dict[str, Expression]) -> Expression:
         if "v" not in names_in(tree):
             tree = constant("restitution", value)
     except InputError as error:
-        if isinstance(value, str) and "v" in value:
+        if callable(value) or (isinstance(value, str) and "v" in value):
             raise
         raise refuse("restitution", value, ACCEPTED) from error
     good = _good(substitute(tree, parameters)) if "v" in names_in(tree) else compare(tree, 0) > 0 >= compare(tree, 1)

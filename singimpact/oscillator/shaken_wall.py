@@ -14,8 +14,17 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from singimpact.algebra.derivatives import derivative
-from singimpact.algebra.expressions import Expression, Name, add, evaluate, multiply, names_in, number, substitute
-from singimpact.algebra.expressions import subtract as minus
+from singimpact.algebra.expressions import (
+    Expression,
+    Name,
+    add,
+    evaluate,
+    multiply,
+    names_in,
+    number,
+    substitute,
+    subtract as minus,
+)
 from singimpact.algebra.numbers import float_array, tree_of
 from singimpact.algebra.rings import DOUBLES
 from singimpact.inputs import InputError, shown, unknown

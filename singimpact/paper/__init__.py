@@ -32,7 +32,7 @@ _FILES = {
     "routes.swan": "Dh_bar f_map g_map h_bar m mbar mu_of_m r_of_m",
     "routes.unfolding": "A D E cofactor impact_velocity kappa launch_velocity t u",
     "sections.errata": "Erratum place_of",
-    "sections.meaning_of_letters": "NOTATION",
+    "sections": "NOTATION",
     "sections.remarks": "GRADES REMARKS",
     "sections.section4_blowup_words": "with_Q",
     "sections.stored_sections": "cache kept_sections marks_of",

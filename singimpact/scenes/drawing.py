@@ -17,7 +17,7 @@ from singimpact.dynamics.basins_of_attraction import Basins
 from singimpact.dynamics.bifurcation_diagram import Bifurcation
 from singimpact.dynamics.orbit import Orbit
 from singimpact.dynamics.sampling import Section
-from singimpact.inputs import refuse
+from singimpact.inputs import checked_keywords, refuse
 from singimpact.scenes.basins_picture import draw_basins, draw_both_sides
 from singimpact.scenes.border_picture import draw_border
 from singimpact.scenes.branch_picture import draw_bifurcation, draw_branches, draw_event_curves
@@ -32,6 +32,7 @@ WIDE, HIGH, BRANCHES = (8.0, 4.0), (7.2, 5.2), (7.2, 4.8)  # inches
 LETTERS = {"tau": r"time $\tau$", "t": "flight time $t$", "v": "velocity $v$"}
 
 
+@checked_keywords
 def plot(thing: Any, axes: Any = None, *, height: str = "v") -> Any:
     """Draw a thing and return the matplotlib axes.
 

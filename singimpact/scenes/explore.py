@@ -27,7 +27,7 @@ from singimpact.flights.horizons import horizon_of, reach_of
 from singimpact.flights.kernels import roots, steps, taylor
 from singimpact.flights.limits import LIMITS, degree_for
 from singimpact.flights.model_numbers import numbers_of_flow, recurrence_of
-from singimpact.inputs import refuse, whole
+from singimpact.inputs import checked_keywords, refuse, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.rebound import rho_of
 from singimpact.progress import ProgressLine
@@ -80,6 +80,7 @@ class ExplorePage:
         write_text(path, self.html)
 
 
+@checked_keywords
 def explore(osc: Oscillator, between: Any = None, steps: int = SETTINGS.steps) -> ExplorePage:
     """A page on which Z, H, P and gamma change as the clearance moves through the nearest swan.
 

@@ -272,9 +272,9 @@ class ImpactSurface:
     @cached_property
     def horizon(self) -> list[Curve]:
         """H = iota(Z): (tau, t) where the flight lands with velocity 0; `visible` where it does so first."""
-        return [
-            _curve("H", _involved(line.points), SURFACE, line, partial(self._first_back, line)) for line in self.lines
-        ]
+        involved = [np.stack([line.points.sum(axis=1), -line.points[:, 1]], axis=1) for line in self.lines]
+        pairs = zip(self.lines, involved, strict=True)
+        return [_curve("H", points, SURFACE, line, partial(self._first_back, line)) for line, points in pairs]
 
     @cached_property
     def outline(self) -> list[Curve]:
@@ -349,7 +349,3 @@ def _to_the_end(curve: Curve) -> Array:
         if mark.name != "end" and any(0 <= i < len(curve) and curve.visible[i] for i in beside):
             chosen[mark.index] = True
     return chosen
-
-
-def _involved(points: Array) -> Array:
-    return np.stack([points.sum(axis=1), -points[:, 1]], axis=1)

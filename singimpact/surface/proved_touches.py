@@ -23,8 +23,7 @@ from singimpact.algebra.analytic import Recorder
 from singimpact.algebra.balls import Balls, as_rational
 from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.expressions import Expression, Name, multiply, names_in, number, substitute
-from singimpact.algebra.isolated_zeros import SETTINGS as BOXES
-from singimpact.algebra.isolated_zeros import Box, IsolatedZeros, Place, isolated_zeros, zeros_of
+from singimpact.algebra.isolated_zeros import SETTINGS as BOXES, Box, IsolatedZeros, Place, isolated_zeros, zeros_of
 from singimpact.algebra.precision import balls_at, series_of_any_length
 from singimpact.flights.enclosures.equation import Refused
 from singimpact.flights.enclosures.tube import upper

@@ -20,8 +20,7 @@ from singimpact.flights.impact_map import first_hit
 from singimpact.flights.inverse_map import backwards
 from singimpact.inputs import InputError, unknown
 from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.wall_acceleration import acceleration as wall_acceleration
-from singimpact.oscillator.wall_acceleration import largest_push
+from singimpact.oscillator.wall_acceleration import acceleration as wall_acceleration, largest_push
 from singimpact.result import Result
 from singimpact.status import Status
 from singimpact.surface.curve import Curve, window_ends

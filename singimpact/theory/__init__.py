@@ -7,12 +7,14 @@ Not here: the points and their jets (`contact`), finite flights (`flights`), the
 from typing import TYPE_CHECKING, Any
 
 from singimpact.handed_on import names_of as _names_of
-from singimpact.theory.formulas import chatter_limit as chatter_limit
-from singimpact.theory.formulas import dynamics_on_gamma as dynamics_on_gamma
-from singimpact.theory.formulas import fibre as fibre
-from singimpact.theory.formulas import gamma as gamma
-from singimpact.theory.formulas import v_c as v_c
-from singimpact.theory.formulas import v_c_on_arrays as v_c_on_arrays
+from singimpact.theory.formulas import (
+    chatter_limit as chatter_limit,
+    dynamics_on_gamma as dynamics_on_gamma,
+    fibre as fibre,
+    gamma as gamma,
+    v_c as v_c,
+    v_c_on_arrays as v_c_on_arrays,
+)
 from singimpact.theory.impact_sheet import Sheet as Sheet
 
 if TYPE_CHECKING:

@@ -13,13 +13,12 @@ from functools import cache
 from typing import Any
 
 from singimpact.algebra.balls import BITS_A_DIGIT, Balls
-from singimpact.algebra.certified import Certified as Certified
-from singimpact.algebra.certified import as_certified
+from singimpact.algebra.certified import Certified as Certified, as_certified
 from singimpact.algebra.numbers import as_fraction, constant
 from singimpact.algebra.precision import balls_at
 from singimpact.algebra.univariate import real_roots
 from singimpact.contact.contact import contact_order
-from singimpact.inputs import InputError, refuse
+from singimpact.inputs import InputError, checked_keywords, refuse
 from singimpact.result import Result, columns_of, in_words
 
 GUARD_BITS = 32  # beside the digits asked for; the loop adds more when a radius is still too large
@@ -88,6 +87,7 @@ def as_dict(points: TangencyFixedPoints | SwanFixedPoints | Multipliers) -> dict
     return points.as_dict()
 
 
+@checked_keywords
 def tangency(r: Any, digits: int = 50) -> TangencyFixedPoints:
     """m1, m2, m3, lambda, mu, m_minus, m_plus at a tangency point [e:meq, e:fixm].
 
@@ -107,13 +107,15 @@ def tangency(r: Any, digits: int = 50) -> TangencyFixedPoints:
         half = Fraction(1, 2)
         found = _multipliers(1, rate, balls)
         low, middle, _ = real_roots(_shifted(_fixed_polynomial(1, rate), -half), balls)  # in m = lambda + 1/2
-        minus, plus = real_roots(_shifted(_q_polynomial(rate), -half), balls)
+        Q = [-rate, -rate, 2 * rate + Fraction(9, 4)]  # Q_r(1, y + 1/2) = r (2y + 1)(y - 1) + (9/4) y^2
+        minus, plus = real_roots(_shifted(Q, -half), balls)
         found |= {"m1": low, "m2": middle, "m3": found["lambda_"] + balls.rational(half)}
         return found | {"m_minus": minus, "m_plus": plus}
 
     return TangencyFixedPoints(**_certified(enclosures, precision))
 
 
+@checked_keywords
 def swan(r: Any, digits: int = 50) -> SwanFixedPoints:
     """m_*, lambda and mu at a swan point [s5-jacobian].
 
@@ -187,11 +189,6 @@ def _fixed_polynomial(j: int, rate: Fraction) -> list[Fraction]:
     p = numerator_coefficients(j)
     low = [-rate * value for value in reversed(p)]
     return low + [Fraction(value) for value in p]
-
-
-def _q_polynomial(rate: Fraction) -> list[Fraction]:
-    """Q_r(1, y + 1/2) = r (2y + 1)(y - 1) + (9/4) y^2."""
-    return [-rate, -rate, 2 * rate + Fraction(9, 4)]
 
 
 def _shifted(coefficients: list[Fraction], by: Fraction) -> list[Fraction]:

@@ -18,7 +18,7 @@ from singimpact.algebra.jets import Jet
 from singimpact.algebra.rings import DOUBLES, EXACT
 from singimpact.algebra.univariate import precision_of
 from singimpact.contact.contact import Contact, contact_order, derivative_name
-from singimpact.inputs import InputError, refuse
+from singimpact.inputs import InputError, checked_keywords, refuse
 from singimpact.oscillator.model import require_smooth_rho
 from singimpact.oscillator.rho_series import TASK
 from singimpact.theory.completion import by_velocity, symbolic_completion
@@ -68,6 +68,7 @@ def _lettered(model: Any, tau: Any, keep: Sequence[str], j: int) -> LetteredMode
     return None
 
 
+@checked_keywords
 def v_c(
     order: int = 6,
     at: str | int = "generic",
@@ -128,6 +129,7 @@ def _long(jet: Jet) -> Any:
     return LongSum.of(jet.to_sympy())
 
 
+@checked_keywords
 def v_c_on_arrays(
     order: int = 8,
     at: str | int = "generic",
@@ -173,6 +175,7 @@ def _launch_or_impact(contact: Contact, order: int, impact: bool) -> Any:
     return made.xdot if impact else made.v
 
 
+@checked_keywords
 def gamma(
     order: int = 6,
     at: str | int = "tangency",
@@ -204,6 +207,7 @@ def gamma(
     return _curve_series("graph", order, _curved(at), model, tau, digits, keep)
 
 
+@checked_keywords
 def fibre(
     order: int = 6, model: Any = None, tau: Any = None, digits: int = 30, keep: Sequence[str] = ()
 ) -> PowerSeries:
@@ -217,6 +221,7 @@ def fibre(
     return _curve_series("graph", order, 0, model, tau, digits, keep)
 
 
+@checked_keywords
 def dynamics_on_gamma(
     order: int = 6,
     at: str | int = "tangency",
@@ -235,6 +240,7 @@ def dynamics_on_gamma(
     return _curve_series("motion", order, _curved(at), model, tau, digits, keep)
 
 
+@checked_keywords
 def chatter_limit(
     order: int = 6, model: Any = None, tau: Any = None, digits: int = 30, keep: Sequence[str] = ()
 ) -> PowerSeries:

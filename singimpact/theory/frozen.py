@@ -125,13 +125,12 @@ def _outline(top: int) -> str:
     contact = Contact.generic(1, top, unit=True)
     names = contact.ring.names
     offset = normal_form(sheet(contact, top).v, 2).offset
-    coefficients = {key[0]: _constants(value) for key, value in offset.terms.items()}
+    coefficients = {
+        key[0]: {exponents: Factored(content) for exponents, content in _coefficient(value).items()}
+        for key, value in offset.terms.items()
+    }
     series = RationalSeries("sigma", names, coefficients, _unit(1, names), 1)
     return rational_series_source("outline_tangency", series, f"v on the outline of p at a tangency, to sigma^{top}.")
-
-
-def _constants(value: Any) -> dict[Exponents, Factored]:
-    return {key: Factored(content) for key, content in _coefficient(value).items()}
 
 
 def _unit(j: int, names: tuple[str, ...]) -> Unit:

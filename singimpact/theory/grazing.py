@@ -29,7 +29,7 @@ from singimpact.algebra.numbers import constant, float_array
 from singimpact.algebra.rings import EXACT
 from singimpact.algebra.univariate import precision_of
 from singimpact.contact.contact import Contact, contact_order, derivative_name
-from singimpact.inputs import InputError, refuse, whole
+from singimpact.inputs import InputError, checked_keywords, refuse, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import sign_of_acceleration
 from singimpact.theory.contact_points import Place, place
@@ -135,6 +135,7 @@ class GrazingMap:
         return "from typing import Any\n\n\n" + "\n\n".join([*parts, "\n".join(lines)])
 
 
+@checked_keywords
 def grazing_map(order: int = 1, model: Any = None, at: Any = None, digits: int = 30) -> GrazingMap:
     """The discontinuity mapping of a graze as a series in h = ((j + 2)! D/a_j)^(1/(j + 2)), D the depth of the motion.
 

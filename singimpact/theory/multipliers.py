@@ -15,7 +15,7 @@ import sympy
 from singimpact.algebra.derivations import At, motion, substitution
 from singimpact.algebra.gathering import remembered
 from singimpact.contact.contact import contact_order
-from singimpact.inputs import refuse
+from singimpact.inputs import checked_keywords, refuse
 
 # The homogeneous models x'' = s^j: the leading part of the theory at contact order j, in closed form.
 #
@@ -68,6 +68,7 @@ def Q(j: int) -> Any:
     return found
 
 
+@checked_keywords
 @remembered
 def r_of_lambda(j: int) -> Any:
     """The restitution whose invariant curve has multiplier lambda: r = lambda^(j+1) P_j/Q_j.

@@ -20,9 +20,8 @@ from singimpact.algebra.jets import Jet, JetSpace
 from singimpact.algebra.polynomials import Exponents
 from singimpact.algebra.rings import EXACT, SymbolRing
 from singimpact.contact.contact import Contact, contact_order, derivative_name
-from singimpact.germs.germ_forms import NormalForm
-from singimpact.germs.germ_forms import normal_form as reduced
-from singimpact.inputs import InputError, refuse
+from singimpact.germs.germ_forms import NormalForm, normal_form as reduced
+from singimpact.inputs import InputError, checked_keywords, refuse
 from singimpact.theory.contact_points import exact_contact, place
 from singimpact.theory.digits import sympy_digits, with_digits
 from singimpact.theory.gamma_in_symbols import length_weight
@@ -152,6 +151,7 @@ class ShownForm:
     invertible: bool
 
 
+@checked_keywords
 def normal_form(
     order: int = 4, at: str | int = "tangency", model: Any = None, tau: Any = None, digits: int = 30
 ) -> FoldForm | ShownForm:

@@ -32,5 +32,5 @@ def test_special_name_is_just_missing():
 
 def test_type_checker_sees_the_same_names(clone):
     text = (clone / "singimpact" / "__init__.py").read_text()
-    shown = [f"import {name} as {name}" in text or f"    {name}: _{name.title()}\n" in text for name in HOMES]
+    shown = [f" {name} as {name}" in text or f"    {name}: _{name.title()}\n" in text for name in HOMES]
     assert [name for name, there in zip(HOMES, shown, strict=True) if not there] == []

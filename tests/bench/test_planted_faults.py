@@ -9,9 +9,16 @@ import numpy as np
 import pytest
 
 import singimpact as si
-from singimpact.bench import derivatives, flown, grazes, lanes, limits, rebounds
-from singimpact.bench import orbits as orbits_orbits
-from singimpact.bench import row as basin_pixels_row
+from singimpact.bench import (
+    derivatives,
+    flown,
+    grazes,
+    lanes,
+    limits,
+    orbits as orbits_orbits,
+    rebounds,
+    row as basin_pixels_row,
+)
 from singimpact.bench.selftest import tangencies
 from singimpact.contact import TangencyPoints
 from singimpact.dynamics import CHAOS

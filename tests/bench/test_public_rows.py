@@ -11,8 +11,8 @@ from types import CodeType, FrameType, ModuleType
 import pytest
 
 import singimpact as si
-from singimpact.bench import COMMANDS as commands_COMMANDS
 from singimpact.bench import (
+    COMMANDS as commands_COMMANDS,
     GROUPS,
     MODELS,
     PUBLIC,

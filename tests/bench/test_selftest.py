@@ -9,10 +9,16 @@ import numpy as np
 import pytest
 
 import singimpact as si
-from singimpact.bench import balls, digits, fixed_steps, flown, limits
-from singimpact.bench import motion as plain_steps_motion
-from singimpact.bench import orbits as orbits_orbits
-from singimpact.bench import row as basin_pixels_row
+from singimpact.bench import (
+    balls,
+    digits,
+    fixed_steps,
+    flown,
+    limits,
+    motion as plain_steps_motion,
+    orbits as orbits_orbits,
+    row as basin_pixels_row,
+)
 from singimpact.bench.selftest import responses, rows, tangencies
 from singimpact.contact import TangencyPoints
 from singimpact.dynamics import basins_of_attraction

@@ -9,8 +9,7 @@ import flint
 import numpy as np
 import pytest
 
-from singimpact.bench import Cubic, Linear, Problem, first_hit, random_states
-from singimpact.bench import states as problems
+from singimpact.bench import Cubic, Linear, Problem, first_hit, random_states, states as problems
 
 
 @pytest.mark.parametrize(("family", "made", "each"), [("linear", Linear, 50), ("duffing", Cubic, 70)])

@@ -1,6 +1,6 @@
-"""`bench start`: what a new process costs, with object code in the cache folder, and in a new cache folder.
+"""`bench start`: what a new process costs that finds object code in the cache folder.
 
-Each row is a process of its own, in a cache folder made for it; the states are others in every process.  CPU seconds
+Each row is a process of its own, in a cache folder made for all; the states are others in every process.  CPU seconds
 do not hold the time that threads of numpy's linear algebra spend while they wait for work (`fresh.NO_SPINNING`).
 """
 
@@ -11,7 +11,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from itertools import count
-from pathlib import Path
 
 from singimpact.bench.drawn import CLEARANCES, OMEGAS
 from singimpact.bench.fresh import Cost, cost
@@ -73,36 +72,14 @@ class Script:
 
 
 def cases(effort: Effort) -> Iterator[Case]:
-    """Two new cache folders, one a family; then processes that find object code in them.
+    """Processes that find object code in the cache folder; what a new folder costs is in the group `limit`.
 
-    A first process of each kind is not counted: it leaves bytecode, and the files in memory.
+    A first process of each kind is not counted: it leaves object code, bytecode, and the files in memory.
     """
     with tempfile.TemporaryDirectory() as directory:
         for family in MODELS:
-            Script(partial(script, family, 10)).in_folder(str(Path(directory) / "unused"))
-        for family in MODELS:
-            yield _new_folder(family, directory)
-        yield _warm(effort, str(Path(directory) / "kept"))
-
-
-def _new_folder(family: str, directory: str) -> Case:
-    """The script leaves its object code in `directory`; the first answer has a folder of its own."""
-    with tempfile.TemporaryDirectory() as alone:
-        answer = Script(partial(first_answer, family)).in_folder(alone)
-    directory = str(Path(directory) / "kept")
-    many = Script(partial(script, family, MANY))
-    first, second = many.in_folder(directory), many.in_folder(directory)
-    own = [
-        _known("singimpact, first answer", "CPU", answer.seconds, Aim(0.3e6)),
-        _known("singimpact, script", f"{MANY} states, CPU", first.seconds, Aim(AIMS[family][0])),
-        _known("singimpact, script again", f"{MANY} states, CPU", second.seconds, Aim(AIMS[family][1])),
-    ]
-    return Case(f"new cache folder, {family}", own)
-
-
-def _known(name: str, setting: str, seconds: float, aim: Aim = Aim()) -> Method:  # noqa: B008
-    """A row of what has been measured: a folder is new once."""
-    return Method(name, setting, lambda: Timed(seconds, [None]), first=True, aim=aim)
+            Script(partial(script, family, MANY)).in_folder(directory)
+        yield _warm(effort, directory)
 
 
 def _warm(effort: Effort, directory: str) -> Case:
@@ -116,10 +93,11 @@ def _warm(effort: Effort, directory: str) -> Case:
         ),
         row("singimpact, first answer", "linear", Script(partial(first_answer, "linear"))),
         row("singimpact, script", f"linear, {FEW} states", Script(partial(script, "linear", FEW)), Aim(0.2e6)),
-        row("singimpact, script", f"linear, {MANY} states", Script(partial(script, "linear", MANY)), Aim(0.4e6)),
         row("singimpact, script", f"Duffing, {FEW} states", Script(partial(script, "Duffing", FEW))),
-        row("singimpact, script", f"Duffing, {MANY} states", Script(partial(script, "Duffing", MANY))),
     ]
+    for family in MODELS:
+        many = Script(partial(script, family, MANY))
+        own.append(row("singimpact, script", f"{family}, {MANY} states", many, Aim(AIMS[family][1])))
     sizes = (FEW,) if effort.quick else (FEW, MANY)
     methods, skipped = with_peers(
         own,

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.numbers import Array
+from singimpact.algebra.numbers import EPSILON, Array
 from singimpact.bench.drawn import compile_entries
 from singimpact.bench.selftest.draws import Flown, against_plain_orbits
 from singimpact.bench.selftest.rows import Row, Tally
@@ -20,7 +20,6 @@ from singimpact.bench.truth.plain_orbits import PlainOrbits
 from singimpact.status import Status
 
 LANES, GRAZES = "states of a batch", "beside a graze"
-EPSILON = 2.0**-52
 
 
 @dataclass(frozen=True)

@@ -10,13 +10,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from singimpact.algebra.numbers import EPSILON
 from singimpact.bench.selftest.draws import Flown, against_plain_orbits
 from singimpact.bench.selftest.rows import Row, Tally
 from singimpact.bench.truth.graded_steps import HIT, MISS, UNDECIDED
 from singimpact.bench.truth.plain_orbits import Impact, PlainOrbits
 from singimpact.status import Status
 
-EPSILON = 2.0**-52
 ORBIT_NAME, LIMIT_NAME = "orbits, event by event", "chatter limits"
 
 

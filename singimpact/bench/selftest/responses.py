@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from singimpact.algebra.numbers import Array
+from singimpact.algebra.numbers import EPSILON, Array
 from singimpact.bench.selftest.draws import DRAW, Flown, against_plain_orbits
 from singimpact.bench.selftest.rows import Row, Tally
 from singimpact.bench.truth.plain_orbits import PlainOrbits
@@ -23,7 +23,6 @@ DERIVATIVE, REBOUND = "D G against differences", "rebound"
 # Flights forward and back: `inverse_map` of the impact gives the launch, within what rounding explains. There is no
 # independent truth: both flights, D G and the error estimates are those of the package.
 
-EPSILON = 2.0**-52
 ROUND_TRIP_NAME = "flown forward and back"
 
 

@@ -9,7 +9,7 @@ from singimpact.bench.selftest import basin_pixels, batches, followed_orbits, re
 from singimpact.bench.selftest.draws import Flown, flown
 from singimpact.bench.selftest.rows import Row, SelfTest
 from singimpact.impact_oscillator import ImpactOscillator
-from singimpact.inputs import refuse, whole
+from singimpact.inputs import checked_keywords, refuse, whole
 from singimpact.progress import ProgressLine
 
 COMPARED: dict[str, Callable[[Flown], Row]] = {
@@ -28,6 +28,7 @@ COMPARED: dict[str, Callable[[Flown], Row]] = {
 }
 
 
+@checked_keywords
 def selftest(osc: ImpactOscillator, *, states: int = 1000, seed: int = 0) -> SelfTest:
     """Random states of a model, flown by the package and judged against independent computations.
 

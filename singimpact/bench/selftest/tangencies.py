@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from singimpact.algebra.numbers import Array
+from singimpact.algebra.numbers import EPSILON, Array
 from singimpact.bench.selftest.draws import Flown
 from singimpact.bench.selftest.rows import Row, Tally
 from singimpact.contact.points import tangency_points
@@ -17,7 +17,6 @@ from singimpact.inputs import InputError
 
 NAME = "tangency points"
 SIGNS = {"gamma": (-1, 1), "foliation": (1, -1)}
-EPSILON = 2.0**-52
 
 
 @dataclass(frozen=True)

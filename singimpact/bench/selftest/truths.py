@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.numbers import EPSILON
 from singimpact.algebra.precision import balls_at, digits_at
 from singimpact.bench.selftest.draws import Flown
 from singimpact.bench.selftest.rows import Row, Tally
@@ -19,7 +20,6 @@ from singimpact.bench.truth.enclosed_flight import Refused
 from singimpact.bench.truth.graded_steps import HIT, MISS
 from singimpact.status import Status
 
-EPSILON = 2.0**-52
 ENDED = (Status.no_return, Status.escaped)
 
 

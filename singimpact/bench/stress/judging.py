@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from math import inf
 from typing import Any
 
-from singimpact.bench.measuring import EPSILON
+from singimpact.algebra.numbers import EPSILON
 
 DIGITS = 60
 STEP = 25  # differences of 60-digit numbers over 10^-STEP are right to 25 digits

@@ -9,5 +9,4 @@ from singimpact.branches.events.graze import GRAZE as GRAZE
 from singimpact.branches.events.kind import EventKind as EventKind
 from singimpact.branches.events.own_event import own_events as own_events
 from singimpact.branches.events.period_doubling import PERIOD_DOUBLING as PERIOD_DOUBLING
-from singimpact.branches.events.table import KINDS as KINDS
-from singimpact.branches.events.table import kind_of as kind_of
+from singimpact.branches.events.table import KINDS as KINDS, kind_of as kind_of

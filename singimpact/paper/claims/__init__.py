@@ -8,14 +8,9 @@ import sys
 from collections.abc import Iterator
 from types import ModuleType
 
-from singimpact.paper.claims.claim import Claim as Claim
-from singimpact.paper.claims.claim import Verdict as Verdict
-from singimpact.paper.claims.engine import run as run
-from singimpact.paper.claims.engine import select as select
-from singimpact.paper.claims.index import BEYOND as BEYOND
-from singimpact.paper.claims.index import CLAIMS as CLAIMS
-from singimpact.paper.claims.index import INDEX as INDEX
-from singimpact.paper.claims.index import entry_of
+from singimpact.paper.claims.claim import Claim as Claim, Verdict as Verdict
+from singimpact.paper.claims.engine import run as run, select as select
+from singimpact.paper.claims.index import BEYOND as BEYOND, CLAIMS as CLAIMS, INDEX as INDEX, entry_of
 
 
 class Claims(ModuleType):

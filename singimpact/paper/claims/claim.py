@@ -260,3 +260,7 @@ class Verdict:
         data["seconds"] = round(self.seconds, 4)
         first = ("id", "verdict", "effective", "worth", "title", "printed", "corrected", "corrected_kind", "witness")
         return {key: data[key] for key in first} | {key: value for key, value in data.items() if key not in first}
+
+
+claim_beyond = in_section("beyond")
+"""The maker of claims beyond the paper."""

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, overload
 
 from singimpact.certificates.claims_checker import SCHEMA, digest_of, file_of
+from singimpact.inputs import checked_keywords
 from singimpact.notebook import table
 from singimpact.paper.claims.claim import MODULO
 from singimpact.store import folder, write_text
@@ -143,6 +144,7 @@ def _cell(text: str, width: int) -> list[str]:
     return textwrap.wrap(text, width, break_on_hyphens=False) or [""]
 
 
+@checked_keywords
 def verify(
     ids: str | Sequence[str] | None = None,
     on_start: Callable[[Entry | Claim, int, int], None] | None = None,

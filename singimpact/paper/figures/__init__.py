@@ -4,7 +4,4 @@ Not here: what they show (`surface`, `dynamics`), what is claimed of it (`paper.
 (`scenes`).
 """
 
-from singimpact.paper.figures.registry import BEYOND as BEYOND
-from singimpact.paper.figures.registry import FIGURES as FIGURES
-from singimpact.paper.figures.registry import figure as figure
-from singimpact.paper.figures.registry import picture as picture
+from singimpact.paper.figures.registry import BEYOND as BEYOND, FIGURES as FIGURES, figure as figure, picture as picture

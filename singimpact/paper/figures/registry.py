@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from singimpact import cache
-from singimpact.inputs import refuse
+from singimpact.inputs import checked_keywords, refuse
 from singimpact.paper.figures.panel import Dot, Line, Panel, Picture, Region
 from singimpact.scenes.stored_layers import key_of
 from singimpact.store import cache_folder
@@ -82,6 +82,7 @@ def picture(number: Any) -> Picture:
     return _function(number)()
 
 
+@checked_keywords
 def figure(number: Any, *, serif: bool = False, dark: bool = False) -> Any:
     """One of the paper's figures as a matplotlib figure, at the size of a printed page; "B1" to "B9" are beyond it.
 

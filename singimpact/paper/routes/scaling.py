@@ -14,9 +14,7 @@ import sympy
 
 from singimpact.algebra.derivations import At, motion, substitution
 from singimpact.paper.routes.equations import equation
-from singimpact.paper.routes.implicit import a_symbol, v_c
-from singimpact.paper.routes.implicit import sigma as offset
-from singimpact.paper.routes.implicit import t as delay
+from singimpact.paper.routes.implicit import a_symbol, sigma as offset, t as delay, v_c
 from singimpact.paper.routes.unfolding import kappa, s, sigma, t
 
 e, H, x, y, alpha, phi_1, phi_2 = sympy.symbols("e H x y alpha phi_1 phi_2")

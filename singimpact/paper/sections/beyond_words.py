@@ -12,8 +12,7 @@ from singimpact.paper.claims.beyond import hertz
 from singimpact.paper.claims.beyond.every_order import j
 from singimpact.paper.claims.beyond.foot import FORMULA
 from singimpact.paper.claims.beyond.loops import inner, preimage, r
-from singimpact.paper.routes import first_order
-from singimpact.paper.routes import unfolding as swan
+from singimpact.paper.routes import first_order, unfolding as swan
 from singimpact.theory.notation import latex
 
 NAMES = {

@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from singimpact.documents.document_steps import Section
 from singimpact.inputs import unknown
 from singimpact.paper.sections import (
+    NOTATION,
     beyond_words,
     section2_words,
     section3_words,
@@ -18,7 +19,6 @@ from singimpact.paper.sections import (
     section5_words,
     section6_words,
 )
-from singimpact.paper.sections.meaning_of_letters import NOTATION
 
 SECTIONS: dict[str, Callable[[], Section]] = {
     "section2": section2_words.told,

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
 from singimpact.documents.rendering import latex_text, latex_words, markdown_text, markdown_words, wrapping
+from singimpact.inputs import checked_keywords
 from singimpact.paper.sections.remarks import GRADES, PLURALS, Remark, remark_on
 from singimpact.paper.sections.stored_sections import kept_legend
 
@@ -376,6 +377,7 @@ def _latex_entry(entry: Erratum) -> str:
     return f"\\par {head}\n\\begin{{numbers}}\n{body}\n\\end{{numbers}}"
 
 
+@checked_keywords
 def errata(on_start: Callable[[Entry | Claim, int, int], None] | None = None) -> Errata:
     """The misprints of the paper, as the verifiers found them; the twin of the command `singimpact errata`.
 

@@ -10,8 +10,7 @@ from singimpact.documents.arranging import by_degree, factored, in_powers
 from singimpact.documents.document_steps import Section, Step
 from singimpact.paper.claims.next_sigma import next_sigma
 from singimpact.paper.claims.sections.section4b import M, ell, on_ray
-from singimpact.paper.routes import fold
-from singimpact.paper.routes import implicit as route
+from singimpact.paper.routes import fold, implicit as route
 from singimpact.paper.routes.fold import k
 from singimpact.paper.routes.implicit import r, sigma, t, v
 from singimpact.paper.sections import section4_blowup_words as orbits

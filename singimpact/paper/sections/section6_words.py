@@ -28,12 +28,8 @@ def _scaled() -> str:
     return rf"x'' = {latex(limit)} + H\left({latex(rest.subs(names))}\right)"
 
 
-def _from_rest() -> Any:
-    """-a at s, in the limit."""
-    return -limit_acceleration().subs(sigma, sympy.Symbol("s"))
-
-
 def _model() -> tuple[Step, ...]:
+    push = -limit_acceleration().subs(sigma, sympy.Symbol("s"))  # -a at s
     return (
         Step(
             "As $c$ passes the value $c_0$ of a swan point, where $a_c = a_c' = 0$ at $\\tau_*$, two zeros $A$, $B$ of "
@@ -57,7 +53,7 @@ def _model() -> tuple[Step, ...]:
             "In the plane of all flights those from rest, $R(\\cdot; s)$, form a curve. It has the direction of "
             "$T - s$ everywhere, and stops at the zeros of $a_c$: they are its cusps. Two are born with one crossing, "
             "at $s^2 = -3e$, in a swallowtail, which $P$ shows wherever such a flight was launched with $v > 0$:",
-            rf"\frac{{\partial R}}{{\partial s}}(T; s) = {factored(_from_rest())}\,(T - s)",
+            rf"\frac{{\partial R}}{{\partial s}}(T; s) = {factored(push)}\,(T - s)",
             "s6-front",
             ("s6-swallowtail",),
         ),

@@ -8,8 +8,7 @@ from itertools import pairwise
 import pytest
 import sympy
 
-from singimpact.certificates import STRONGEST_FIRST as claims_checker_STRONGEST_FIRST
-from singimpact.certificates import Refused, check_words
+from singimpact.certificates import STRONGEST_FIRST as claims_checker_STRONGEST_FIRST, Refused, check_words
 from singimpact.documents import Mark
 from singimpact.impact_oscillator import ImpactOscillator
 from singimpact.paper import (

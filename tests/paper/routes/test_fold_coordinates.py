@@ -2,8 +2,7 @@
 
 import sympy
 
-from singimpact.paper import eta as fold_eta
-from singimpact.paper import next_sigma, psi_q
+from singimpact.paper import eta as fold_eta, next_sigma, psi_q
 from singimpact.paper.routes.implicit import sigma
 from singimpact.theory import fold_form
 

@@ -4,9 +4,20 @@ import mpmath
 import pytest
 import sympy
 
-from singimpact.paper import Dh_bar, derived_from, equation, f_map, g_map, h_bar, mbar, mu_of_m, r_of_m, watched
-from singimpact.paper import m as swan_m
-from singimpact.paper import r as route_r
+from singimpact.paper import (
+    Dh_bar,
+    derived_from,
+    equation,
+    f_map,
+    g_map,
+    h_bar,
+    m as swan_m,
+    mbar,
+    mu_of_m,
+    r as route_r,
+    r_of_m,
+    watched,
+)
 from singimpact.paper.routes import fold
 from singimpact.theory import eigenvalues_on_gamma, fold_form, lambda_, mu_of_lambda, r_of_lambda
 

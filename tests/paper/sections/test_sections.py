@@ -8,8 +8,7 @@ import sys
 
 import pytest
 from fakes import claims_room
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from singimpact.documents import (
     PAGE,

@@ -6,8 +6,7 @@ from fractions import Fraction
 import false_certificates as false
 import pytest
 import sympy
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from tampering import bumped, changed, leaves
 
 from singimpact.algebra import (

@@ -3,8 +3,7 @@
 from fractions import Fraction
 
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from sympy_ring import SympyExact
 
 from singimpact.algebra import DOUBLES, EXACT, JetSpace, SymbolRing, blow_up, derivation, divided, implicit, inverse_map

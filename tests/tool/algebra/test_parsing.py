@@ -6,8 +6,7 @@ from random import Random
 
 import pytest
 import sympy
-from hypothesis import assume, given
-from hypothesis import strategies as st
+from hypothesis import assume, given, strategies as st
 
 from singimpact.algebra import (
     EXACT,

@@ -11,8 +11,7 @@ import pytest
 
 import singimpact as si
 from singimpact.algebra import balls_at
-from singimpact.branches import Cones, Crossings, EnclosedCrossing, local_arc
-from singimpact.branches import enclosed_crossing as room
+from singimpact.branches import Cones, Crossings, EnclosedCrossing, enclosed_crossing as room, local_arc
 from singimpact.branches.enclosed_crossing import enclosed_crossing
 from singimpact.flights import Refused
 from singimpact.inputs import InputError

@@ -14,8 +14,16 @@ from witness import integrate
 
 import singimpact as si
 from singimpact.algebra import Balls, balls_at, constant
-from singimpact.branches import BallClosing, Krawczyk, Spans, TouchingClosing, rate_of, rate_over, return_slope
-from singimpact.branches import enclosed_event as room
+from singimpact.branches import (
+    BallClosing,
+    Krawczyk,
+    Spans,
+    TouchingClosing,
+    enclosed_event as room,
+    rate_of,
+    rate_over,
+    return_slope,
+)
 from singimpact.branches.enclosed_event import enclosed_event
 from singimpact.flights import Launch, Refused, timed_flight, touches_first
 from singimpact.inputs import InputError

@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 
 import singimpact as si
-from singimpact.branches import CrossedSet, Horseshoe
-from singimpact.branches import horseshoe as room
+from singimpact.branches import CrossedSet, Horseshoe, horseshoe as room
 from singimpact.branches.horseshoe import horseshoe
 from singimpact.inputs import InputError
 

@@ -18,11 +18,11 @@ from singimpact.surface import (
     FlightFromRest,
     Tangencies,
     boxes_from_rest,
+    outline_transitions as transitions_room,
     proved_touches,
     rest_flight,
     transitions,
 )
-from singimpact.surface import outline_transitions as transitions_room
 
 DUFFING = si.ImpactOscillator("x + 0.1*xdot + x**3/10", "cos(2.8*t)", 0, "0.8")
 DAMPED = si.ImpactOscillator("x + 0.1*xdot", "cos(2.8*t)", 0, "0.8")

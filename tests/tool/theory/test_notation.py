@@ -2,8 +2,7 @@
 
 import pytest
 import sympy
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from singimpact.documents import by_degree, factored, in_powers
 from singimpact.theory import latex

@@ -8,8 +8,7 @@ import sympy
 from singimpact.contact import Contact
 from singimpact.inputs import InputError
 from singimpact.oscillator import Oscillator
-from singimpact.paper import a_symbol, phi_c
-from singimpact.paper import v_c as route_v_c
+from singimpact.paper import a_symbol, phi_c, v_c as route_v_c
 from singimpact.theory import (
     P,
     Q,

@@ -15,11 +15,11 @@ from singimpact.theory import (
     eigenvalues_on_gamma,
     fixed_points,
     invariant_curve,
+    lambda_ as homogeneous_lambda_,
     launch_velocity,
     mu_of_lambda,
     r_of_lambda,
 )
-from singimpact.theory import lambda_ as homogeneous_lambda_
 
 lambda_ = homogeneous_lambda_
 

@@ -10,14 +10,13 @@ import sympy
 from singimpact.algebra.certificates import positive_on
 from singimpact.branches.border import BorderOrbit, border_orbits
 from singimpact.oscillator.model import Oscillator
-from singimpact.paper.claims.claim import Check, Statement, in_section
+from singimpact.paper.claims.claim import Check, Statement, claim_beyond
 from singimpact.paper.claims.sections.section4a_blowup import HALF, THREE_HALVES
 from singimpact.paper.claims.sections.section4a_multipliers import ray_m3
 from singimpact.paper.claims.verifiers import every, identity, is_zero
 from singimpact.paper.routes import fold
 from singimpact.paper.routes.implicit import a_symbol, at_contact, sigma, t, v, y_c
 
-claim = in_section("beyond")
 lam = sympy.Symbol("lambda")
 _SCALE = sympy.Symbol("h")
 _FACTOR = lam * (2 + lam) ** 2 / (1 + 2 * lam) ** 2
@@ -138,7 +137,7 @@ def _measured(stated: tuple[int, int, int, int]) -> Check:
 
 
 CLAIMS = (
-    claim(
+    claim_beyond(
         "b:cascade-launch",
         "a launch next to a release differs from it only by v - a' sigma^2/2, of second order",
         Statement(
@@ -154,7 +153,7 @@ CLAIMS = (
         ),
         ("e:yeq",),
     ),
-    claim(
+    claim_beyond(
         "b:cascade-contraction",
         "lambda^2 mu < 1 for every r in (0, 1): what a window returns is small beside its width",
         Statement(
@@ -172,7 +171,7 @@ CLAIMS = (
         ),
         ("s4-saddle-m3", "s4-Nr-3", "s4-m3"),
     ),
-    claim(
+    claim_beyond(
         "b:cascade-contraction-r",
         "lambda^2 mu = r^2/lambda^3",
         Statement(r"\lambda^2\mu=r^2/\lambda^3", (2, 3)),
@@ -180,7 +179,7 @@ CLAIMS = (
         ((2, 2), (1, 3), (2, 5)),
         ("s4-Nr-3", "e:meq"),
     ),
-    claim(
+    claim_beyond(
         "b:cascade",
         "beside a border orbit edges shrink by mu, and multipliers of the windows' attractors by lambda^2 mu",
         Statement(

@@ -12,10 +12,9 @@ from typing import Any
 import sympy
 
 from singimpact.algebra.derivations import At, substitution
-from singimpact.paper.claims.claim import Check, Statement, in_section
+from singimpact.paper.claims.claim import Check, Statement, claim_beyond
 from singimpact.paper.claims.verifiers import every, identity
 
-claim = in_section("beyond")
 tau, v, t, c, k = sympy.symbols("tau v t c k")
 a, a_1, a_2, a_d1, Y, Y_d, R_c, R_dc = sympy.symbols("a a_1 a_2 a_d1 Y Yd R_c Rd_c")
 C, S, A_1, A_2 = sympy.symbols("C S A_1 A_2")
@@ -110,7 +109,7 @@ def _with(index: int, other: Any) -> tuple[Any, ...]:
 
 
 CLAIMS = (
-    claim(
+    claim_beyond(
         "b:events-front",
         "P and Pi_0 are the preimage of one front of flights under a map that is folded along v = 0, with a cusp at "
         "tangency points",
@@ -123,7 +122,7 @@ CLAIMS = (
         (_with(1, a), _with(2, v), _with(4, -a), _with(5, a), _with(6, sympy.Integer(0))),
         ("e:acc",),
     ),
-    claim(
+    claim_beyond(
         "b:events-critical",
         "along flights with two rests dc = 0 exactly where a(s_1) a(s_2) Y(s_2, s_1) = 0: tangencies and tacnodes",
         Statement(r"E(s_1,s_2)=0:\ dc=0\iff a(s_1)\,a(s_2)\,Y(s_2,s_1)=0", -a_1 * a_2 * Y),
@@ -131,7 +130,7 @@ CLAIMS = (
         (-a_1 * Y, -a_1 * a_2 * Y_d, a_1 * a_2 * Y, -a_1 * a_2),
         ("b:events-front",),
     ),
-    claim(
+    claim_beyond(
         "b:events-eliminated",
         "two rests of a linear oscillator: the clearance is eliminated, one function of the two times is left",
         Statement(

@@ -18,12 +18,11 @@ from singimpact.algebra.parsing import parse
 from singimpact.algebra.precision import balls_at, digits_at
 from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.paper.claims.beyond.events import composed
-from singimpact.paper.claims.claim import Check, Statement, in_section
+from singimpact.paper.claims.claim import Check, Statement, claim_beyond
 from singimpact.paper.claims.verifiers import every
 from singimpact.surface.outline_transitions import transitions
 from singimpact.surface.swan_families import Transition
 
-claim = in_section("beyond")
 kappa, omega, P, Q, g, u, y = sympy.symbols("kappa omega P Q g u y")
 Cm, Sm, Cw, Sw, Ch, Sh = sympy.symbols("Cm Sm Cw Sw Ch Sh")
 K, p_, q_, r_ = sympy.symbols("K p q r")
@@ -317,7 +316,7 @@ def _kinds(stated: frozenset[str]) -> Check:
 
 
 CLAIMS = (
-    claim(
+    claim_beyond(
         "b:events-families",
         "x'' + x = cos(omega t): flights with two rests are symmetric, or skew and not seen, or at rest once a period",
         Statement(
@@ -333,7 +332,7 @@ CLAIMS = (
         ),
         ("b:events-eliminated",),
     ),
-    claim(
+    claim_beyond(
         "b:events-values",
         "x'' + x = cos(omega t): tacnodes at c = +-kappa cos(k omega pi/2), k odd; flights from tangency to tangency",
         Statement(
@@ -345,7 +344,7 @@ CLAIMS = (
         ((Sh / Ch, kappa * Cw, Cw), (Ch / Sh, Cw, Cw), (Ch / Sh, kappa * Cw, -Cw), (-Ch / Sh, kappa * Cw, Cw)),
         ("b:events-families", "b:events-critical"),
     ),
-    claim(
+    claim_beyond(
         "b:events-two",
         "x'' + x = cos 2t has transitions at c = 1, 1/3, -1/3, -1 alone, of which 1/3 is not seen",
         Statement(
@@ -362,7 +361,7 @@ CLAIMS = (
         ),
         ("b:events-families", "b:events-critical"),
     ),
-    claim(
+    claim_beyond(
         "b:events-first",
         "x'' + x = cos(omega t), omega > 1: the swan of c = 1 stays uncut down to c_1, a tacnode for omega < 3, "
         "beyond it a flight from tangency to tangency",
@@ -381,7 +380,7 @@ CLAIMS = (
         ),
         ("b:events-values", "b:events-critical"),
     ),
-    claim(
+    claim_beyond(
         "b:events-met",
         "as c moves on from a negative swan of a linear oscillator, its arc first meets a tacnode, a tangency or a "
         "periodic graze, and never a triple point",

@@ -12,11 +12,10 @@ import sympy
 
 from singimpact.algebra.certificates import positive_in, positive_on
 from singimpact.algebra.derivations import At, substitution
-from singimpact.paper.claims.claim import Check, Statement, in_section
+from singimpact.paper.claims.claim import Check, Statement, claim_beyond
 from singimpact.paper.claims.verifiers import every, is_zero, same
 from singimpact.theory.multipliers import DG_on_ray, P, Q, lambda_, mu_of_lambda, r_of_lambda
 
-claim = in_section("beyond")
 ell, L, j, i, V, W = sympy.symbols("l L j i V W")
 CLOSED_P = (j + 1) - (j + 2) * ell + ell**2 * L  # (1 - l)^2 P
 CLOSED_Q = 1 - (j + 2) * ell * L + (j + 1) * ell**2 * L  # (1 - l)^2 Q
@@ -248,7 +247,7 @@ def _sides(stated: tuple[int, int]) -> Check:
 
 
 CLAIMS = (
-    claim(
+    claim_beyond(
         "b:order-ray",
         "at a contact point of every order j >= 1 and for every r in (0, 1) exactly one ray is invariant, with l in "
         "(0, 1)",
@@ -256,7 +255,7 @@ CLAIMS = (
         _ray,
         (0, 2),
     ),
-    claim(
+    claim_beyond(
         "b:order-saddle",
         "and it is a saddle: its multipliers are l < 1 and mu > 1/l",
         Statement(r"\mu_j=\frac{1}{l}\Bigl(\frac{P_j}{Q_j}\Bigr)^2>l^{-1},\ j\ge1", 1),
@@ -264,7 +263,7 @@ CLAIMS = (
         (2, 3),
         ("b:order-ray",),
     ),
-    claim(
+    claim_beyond(
         "b:order-expansion",
         "mu < 1/r, for every j",
         Statement(r"r\mu_j=l^j(P_j/Q_j)^3<1,\ j\ge1", 1),
@@ -272,7 +271,7 @@ CLAIMS = (
         (0, -1),
         ("b:order-ray",),
     ),
-    claim(
+    claim_beyond(
         "b:order-exponents",
         "in (tau, v) both exponents of G along gamma are negative for every j: only v/|sigma|^(j+1) is repelled",
         Statement(r"l^j(P_j/Q_j)^2<1,\ j\ge1", 2),
@@ -280,7 +279,7 @@ CLAIMS = (
         (3, 1),
         ("b:order-ray",),
     ),
-    claim(
+    claim_beyond(
         "b:order-parity",
         f"the other real rays: two with l < 0 for odd j, none for even j, for j = 1..{TURNED}",
         Statement(rf"\#\{{l<0\}}=2\ (j\ \text{{odd}}),\ 0\ (j\ \text{{even}}),\ 1\le j\le{TURNED}", (2, 0)),
@@ -288,7 +287,7 @@ CLAIMS = (
         ((0, 2), (1, 1)),
         ("b:order-ray",),
     ),
-    claim(
+    claim_beyond(
         "b:order-sides",
         "gamma lies on sigma < 0 alone, and only where the wall acceleration is negative there",
         Statement(r"\gamma\subset\{\sigma<0\},\ a_j\sigma^j<0", (-1, -1)),

@@ -7,7 +7,7 @@ from typing import Any
 
 import sympy
 
-from singimpact.paper.claims.claim import Check, Statement, in_section
+from singimpact.paper.claims.claim import Check, Statement, claim_beyond
 from singimpact.paper.claims.sections.section3 import NORMALLY_HYPERBOLIC
 from singimpact.paper.claims.verifiers import every, is_zero, same, sample
 from singimpact.paper.routes import first_order as route
@@ -16,7 +16,6 @@ from singimpact.paper.trials.first_order_feet import MODELS, RATES, measured
 from singimpact.theory.impact_sheet import generic_sheet
 from singimpact.theory.multipliers import launch_velocity
 
-claim = in_section("beyond")
 X = sympy.Symbol("X")
 SHOWN = 3  # contact orders at which v_c is compared beside the identity for every j
 WITHIN = 0.1  # of an order, between distances H that differ by a factor 2
@@ -100,7 +99,7 @@ ALPHA = (2 * second + first * damping) / (2 * (j + 3) * first)
 CHI = damping + 2 * A3 / (3 * A2)
 
 CLAIMS = (
-    claim(
+    claim_beyond(
         "b:first-order",
         "the first correction to the blown-up map is removed by a change of time s + alpha s^2, at every j >= 1",
         Statement(r"\alpha=\frac{2a_{j+1}+a_jf_v}{2(j+3)a_j}", ALPHA),
@@ -114,7 +113,7 @@ CLAIMS = (
         ),
         ("e:acc", "b:gauge-nonlinear"),
     ),
-    claim(
+    claim_beyond(
         "b:first-order-foot",
         "an unfolded swan tends to the universal one at first order in H, with a term that is known for every r",
         Statement(
@@ -131,7 +130,7 @@ CLAIMS = (
         ),
         ("s6-scaling", "s6n-X"),
     ),
-    claim(
+    claim_beyond(
         "b:first-order-measured",
         "five oscillators, three values of r: the error is of order 1, and of order 2 without that term",
         Statement(r"X_H-X\sim H,\quad X_H-X+\tfrac{1}{10}\chi(X^2-1)H\sim H^2", (1, 2, -(X**2 - 1) / 10)),

@@ -11,13 +11,12 @@ import sympy
 
 from singimpact.algebra.certificates import positive_in
 from singimpact.algebra.derivations import At, substitution
-from singimpact.paper.claims.claim import Check, Statement, in_section
+from singimpact.paper.claims.claim import Check, Statement, claim_beyond
 from singimpact.paper.claims.verifiers import every, is_zero, same, sample
 from singimpact.paper.routes import unfolding as model
 from singimpact.paper.routes.unfolding import kappa, sigma, t
 from singimpact.paper.trials.universal_foot import Box, covering, elastic, foot, scaled
 
-claim = in_section("beyond")
 later, w = sympy.symbols("t_1 w")  # the length of the next flight; the invariant of the elastic ball
 e, b = sympy.symbols("e b")  # t/sigma and 1/sigma^2
 BEHIND = {sigma: (1, sympy.oo), t: (0, sympy.oo), later: (0, sympy.oo)}
@@ -188,7 +187,7 @@ SEVENTHS = Fraction(3, 7)
 FORMULA = (14 * w / (3 * 12 ** sympy.Rational(2, 3))) ** sympy.Rational(3, 7)
 
 CLAIMS = (
-    claim(
+    claim_beyond(
         "b:foot-monotone",
         "in the universal negative swan the foot X rises with r, and with the velocity at A",
         Statement(
@@ -200,7 +199,7 @@ CLAIMS = (
         ((-1, 1, 1), (1, -1, 1), (1, 1, -1)),
         ("s6n-X",),
     ),
-    claim(
+    claim_beyond(
         "b:foot",
         "X = 3 (1 - r)^(-3/7) within 2 % for all r up to 19/20",
         Statement(
@@ -216,7 +215,7 @@ CLAIMS = (
         ),
         ("b:foot-monotone",),
     ),
-    claim(
+    claim_beyond(
         "b:foot-limit",
         "as r -> 1 X (1-r)^(3/7) tends to 2.94103, which the adiabatic invariant of the elastic ball from A gives",
         Statement(

@@ -15,10 +15,8 @@ from singimpact.algebra.numbers import exact
 from singimpact.dynamics.gamma_proof.proof import CertifiedGamma, certified_gamma
 from singimpact.inputs import InputError
 from singimpact.oscillator.model import Oscillator
-from singimpact.paper.claims.claim import Check, Statement, in_section
+from singimpact.paper.claims.claim import Check, Statement, claim_beyond
 from singimpact.paper.claims.verifiers import every
-
-claim = in_section("beyond")
 
 BEFORE = 2
 """A phase with a_c < 0 between the zero before tau_* and tau_*, at c = 0.3 and at c = 1."""
@@ -116,7 +114,7 @@ DUFFING = Stated("3/10", "1/2", 1, "1/4", ("0.01857755", "1e-4"), "1.8", "4", "x
 INTERVAL = ("3/10", ("0.48", "0.52"), "1/4", "0.5")
 
 CLAIMS = (
-    claim(
+    claim_beyond(
         "b:gamma-tangency",
         "x'' + x = cos 2t, c = 3/10, r = 1/2: gamma exists for S <= 1/4, alone, and decides the fate of every launch",
         Statement(
@@ -136,7 +134,7 @@ CLAIMS = (
         ),
         ("b:gauge", "b:order-ray"),
     ),
-    claim(
+    claim_beyond(
         "b:gamma-swan",
         "x'' + x = cos 2t at the swan c = 1, r = 1/2: the same for S <= 1/4; above gamma chatter completes after tau_*",
         Statement(
@@ -154,7 +152,7 @@ CLAIMS = (
         ),
         ("b:gauge", "b:order-ray"),
     ),
-    claim(
+    claim_beyond(
         "b:gamma-interval",
         "x'' + x = cos 2t, c = 3/10: the same for every r in [0.48, 0.52] at once",
         Statement(
@@ -165,7 +163,7 @@ CLAIMS = (
         (("3/10", ("0.48", "0.52"), "9/10", "0.5"), ("3/10", ("0.48", "0.52"), "1/4", "0.05")),
         ("b:gamma-tangency",),
     ),
-    claim(
+    claim_beyond(
         "b:gamma-nonlinear",
         "x'' + x + x^3/5 + x'/10 = cos 2t, c = 3/10, r = 1/2: the same for tau_* - tau <= 1/4 and every v <= 4",
         Statement(

@@ -17,11 +17,10 @@ from singimpact.algebra.derivations import At, substitution
 from singimpact.algebra.jets import Jet, JetSpace
 from singimpact.algebra.rings import Exact
 from singimpact.contact.contact import Contact
-from singimpact.paper.claims.claim import Check, Statement, in_section
+from singimpact.paper.claims.claim import Check, Statement, claim_beyond
 from singimpact.paper.claims.verifiers import every, same
 from singimpact.theory.impact_sheet import generic_sheet, sheet
 
-claim = in_section("beyond")
 X, V, E, C, S, a, b, w = sympy.symbols("X V E C S a b w")
 RATIONALS = Exact()
 ORDER = 12  # to which the two routes to v_c are compared
@@ -122,7 +121,7 @@ def _entry(stated: tuple[int, ...]) -> Check:
 
 
 CLAIMS = (
-    claim(
+    claim_beyond(
         "b:gauge",
         "a linear impact oscillator is a ball under time-dependent gravity, exactly, for less than pi/omega_d",
         Statement(
@@ -134,7 +133,7 @@ CLAIMS = (
         ((2, 1), (3, 0), (3, -1)),
         ("e:acc",),
     ),
-    claim(
+    claim_beyond(
         "b:gauge-nonlinear",
         "second derivatives of f enter v_c by j + 2 degrees above its leading part, j = 0, 1, 2",
         Statement(r"\deg f_{20},f_{11},f_{02}\ \text{in}\ v_c:\ (j+1)+(j+2)", (2, 3, 4)),

@@ -17,11 +17,10 @@ import sympy
 from singimpact.algebra.certificates import positive_in
 from singimpact.algebra.derivations import At, substitution
 from singimpact.paper.claims.beyond.every_order import CLOSED_P, CLOSED_Q, L, closed_forms, ell, j
-from singimpact.paper.claims.claim import Check, Statement, in_section
+from singimpact.paper.claims.claim import Check, Statement, claim_beyond
 from singimpact.paper.claims.verifiers import every, same, sample
 from singimpact.paper.trials.hertz_orbits import POWERS, STARTS, Measured, measured
 
-claim = in_section("beyond")
 q, e, rate, exponent = sympy.symbols("q e x N")
 WITHIN = 0.15  # of the second term of gamma; what is left out has the part P = v/(b h^(j+1)) <= 1/60 of it, times 5
 
@@ -197,14 +196,14 @@ def _beside(found: Measured, order: int, power: Fraction, law: tuple[float, floa
 
 
 CLAIMS = (
-    claim(
+    claim_beyond(
         "b:hertz-adiabatic",
         "an elastic flight of x'' = s^j before s = 0 keeps v^3/|a_c| up to the third order of its length, for every j",
         Statement(r"\frac{U^3}{|\sigma+t|^j}=\frac{v^3}{|\sigma|^j}\bigl(1+O(e^3)\bigr),\ e=t/|\sigma|,\ x''=s^j", 3),
         _adiabatic,
         (2, 4, 1),
     ),
-    claim(
+    claim_beyond(
         "b:hertz",
         "where impacts lose C v^q of a low speed, 0 < q < 1, gamma is |sigma|^((j+1)/(1-q)) times a known constant",
         Statement(
@@ -223,7 +222,7 @@ CLAIMS = (
         ),
         ("b:hertz-adiabatic", "b:first-order"),
     ),
-    claim(
+    claim_beyond(
         "b:hertz-sides",
         "v/|sigma|^((j+1)/(1-q)) falls below that value and rises above it: distances grow like |sigma|^(-1-(2+q)j/3)",
         Statement(r"\delta\propto|\sigma|^{-p},\ p=1+\tfrac13(2+q)j>1", REPELLED),
@@ -231,7 +230,7 @@ CLAIMS = (
         (REPELLED - 1, 1 + (2 - q) * j / 3, sympy.Integer(1), -REPELLED),
         ("b:hertz",),
     ),
-    claim(
+    claim_beyond(
         "b:hertz-next",
         "and its second term, where (j+1) q < 1 - q: there further powers of the speed and of sigma come later",
         Statement(
@@ -243,7 +242,7 @@ CLAIMS = (
         (sympy.Integer(0), -SECOND, SECOND / q, 2 * SECOND, SECOND.subs(j, 1)),
         ("b:hertz",),
     ),
-    claim(
+    claim_beyond(
         "b:hertz-chatter",
         "under a constant a_c < 0 the chatter left takes a time proportional to v^(1-q): it ends although r = 1",
         Statement(r"\tau_\infty-\tau\sim\frac{2}{1-q}\,\frac{v^{1-q}}{C\,|a_c|}", 2 / (1 - q)),
@@ -251,7 +250,7 @@ CLAIMS = (
         (sympy.Integer(2), 2 / q, 1 / (1 - q)),
         ("b:hertz",),
     ),
-    claim(
+    claim_beyond(
         "b:hertz-measured",
         "gamma of four oscillators, j = 1 and 2, q = 1/10, 1/5, 3/10, 1/2: both terms on true orbits",
         Statement(

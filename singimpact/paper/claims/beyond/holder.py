@@ -7,11 +7,10 @@ from typing import Any
 import sympy
 
 from singimpact.paper.claims.beyond.every_order import j, rising
-from singimpact.paper.claims.claim import Check, Statement, in_section
+from singimpact.paper.claims.claim import Check, Statement, claim_beyond
 from singimpact.paper.claims.verifiers import every, same
 from singimpact.paper.trials.orbits_beside_gamma import RATES, STARTS, beside
 
-claim = in_section("beyond")
 lam, mu = sympy.symbols("lambda mu")
 EXPONENT = sympy.log(1 / lam) / sympy.log(mu)
 NEAR = 1e-5  # of an exponent; the next terms change those found by 2e-6
@@ -83,7 +82,7 @@ def _counts(stated: int) -> Check:
 
 
 CLAIMS = (
-    claim(
+    claim_beyond(
         "b:holder-bounds",
         "the exponent ln(1/lambda)/ln mu lies between 3/(3+2j) and 1, for every contact order j and every r in (0, 1)",
         Statement(r"\frac{3}{3+2j}<\alpha=\frac{\ln(1/\lambda)}{\ln\mu}<1,\ j\ge1", (3, 3, 2)),
@@ -91,7 +90,7 @@ CLAIMS = (
         ((3, 3, 1), (3, 2, 2), (4, 3, 2), (1, 2, 0)),
         ("b:order-ray", "b:order-saddle", "b:order-expansion"),
     ),
-    claim(
+    claim_beyond(
         "b:holder",
         "below gamma at the relative distance delta chatter ends C delta^alpha before tau_*: six oscillators, j = 1, 2",
         Statement(
@@ -103,7 +102,7 @@ CLAIMS = (
         (sympy.Rational(1, 2), 1 / EXPONENT, EXPONENT / 2, sympy.Integer(1), 3 * EXPONENT / (2 + EXPONENT)),
         ("b:holder-bounds",),
     ),
-    claim(
+    claim_beyond(
         "b:holder-count",
         "above gamma contact is lost after ln(1/delta)/ln mu + O(1) impacts: one more for each factor mu",
         Statement(r"N(\delta/\mu)=N(\delta)+1", 1),

@@ -19,10 +19,8 @@ from singimpact.branches.horseshoe import Horseshoe
 from singimpact.branches.periodic import periodic
 from singimpact.inputs import InputError
 from singimpact.oscillator.model import Oscillator
-from singimpact.paper.claims.claim import Check, Statement, in_section
+from singimpact.paper.claims.claim import Check, Statement, claim_beyond
 from singimpact.paper.claims.verifiers import every
-
-claim = in_section("beyond")
 
 DIGITS = 30
 NEAR = Fraction(1, 10)
@@ -161,7 +159,7 @@ TRUE = Stated(
 CHAOS = ("4/5", (1, 17), "0.1256")
 
 CLAIMS = (
-    claim(
+    claim_beyond(
         "b:homoclinic",
         "x'' + x = cos 2.8t, c = 0, r = 4/5: a saddle has a transverse homoclinic orbit along which G is smooth",
         Statement(
@@ -179,7 +177,7 @@ CLAIMS = (
             TRUE._replace(restitution="0.8000001"),
         ),
     ),
-    claim(
+    claim_beyond(
         "b:horseshoe",
         "x'' + x = cos 2.8t, c = 0, r = 4/5: loops of 1 and of 17 impacts in any order, entropy at least 0.1256",
         Statement(

@@ -14,7 +14,7 @@ import sympy
 
 from singimpact.algebra.certificates import positive_in, positive_on
 from singimpact.algebra.derivations import At, motion, substitution
-from singimpact.paper.claims.claim import Check, Statement, in_section
+from singimpact.paper.claims.claim import Check, Statement, claim_beyond
 from singimpact.paper.claims.verifiers import every, is_zero, same
 from singimpact.paper.trials.loop_heights import (
     GENERATIONS,
@@ -28,7 +28,6 @@ from singimpact.paper.trials.loop_heights import (
 )
 from singimpact.theory.multipliers import P, Q, lambda_, launch_velocity
 
-claim = in_section("beyond")
 ell, w, r, s, v = sympy.symbols("l w r s v")
 lam, mu = sympy.symbols("lambda mu")
 NEAR, ORDER = 0.02, 0.1  # of a ratio of feet, and of an order over a factor 2
@@ -182,7 +181,7 @@ HALF, TEAR = sympy.Rational(1, 2), sympy.Rational(3, 8)
 INNER = r * (1 + ell - 2 * ell**2) - 3 * ell**2
 
 CLAIMS = (
-    claim(
+    claim_beyond(
         "b:loops-map",
         "over A - h the heights of W^s(X), of its tears and of gamma tend to a'(A) h^2 w, w algebraic in r",
         Statement(
@@ -200,7 +199,7 @@ CLAIMS = (
         ),
         ("b:order-ray", "s6n-X", "b:foot-monotone"),
     ),
-    claim(
+    claim_beyond(
         "b:loops",
         "eight crossings of W^s(X) on three models, three values of r: the heights differ from these by O(h)",
         Statement(r"v=a'(A)\,h^2\,(w_n+O(h)),\ n\le4", (HALF, INNER)),
@@ -213,7 +212,7 @@ CLAIMS = (
         ),
         ("b:loops-map",),
     ),
-    claim(
+    claim_beyond(
         "b:loops-law",
         "feet above gamma at the relative distance delta oscillate about X with an amplitude like delta^(2 alpha)",
         Statement(

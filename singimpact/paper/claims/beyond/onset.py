@@ -9,14 +9,13 @@ import sympy
 
 from singimpact.algebra.certificates import positive_in
 from singimpact.algebra.derivations import At, substitution
-from singimpact.paper.claims.claim import Check, Statement, in_section
+from singimpact.paper.claims.claim import Check, Statement, claim_beyond
 from singimpact.paper.claims.sections.section6_scaling import near_the_swan
 from singimpact.paper.claims.verifiers import every, same
 from singimpact.paper.routes import unfolding as model
 from singimpact.paper.routes.unfolding import kappa, r, sigma, t, u
 from singimpact.paper.trials.first_order_feet import BIRTH_RATES, DEPTHS, LIFTS, hop, limit_of
 
-claim = in_section("beyond")
 v, s, bend, drop, rate = sympy.symbols("v s A2 dc a_c")  # A2 = |a''|, a_c = |da/dc|
 WINDOW = {sigma: (-5, 5), t: (0, 12), r: (0, 1)}  # of the universal model, in half distances
 NEAR = 0.01  # of a ratio to its law at the smaller c_0 - c
@@ -104,7 +103,7 @@ FLIGHT = (s + 1) ** 3 * (3 - s)
 LAWS = sympy.Integer(4), sympy.Rational(8, 3), sympy.Rational(9, 8)
 
 CLAIMS = (
-    claim(
+    claim_beyond(
         "b:onset-none",
         "tau rises along every flight, so nothing recurrent is born within an unfolded swan",
         Statement(r"G(\tau,v)=(\tau+t,\cdot),\ t>0", sigma),
@@ -112,7 +111,7 @@ CLAIMS = (
         (-sigma, v, sigma - v, sigma + v),
         ("e:acc",),
     ),
-    claim(
+    claim_beyond(
         "b:onset-hop",
         "from A a negative swan throws the mass: it hits 4H later with (8/3)|a''| H^3 and rises by (9/8)|a''| H^4",
         Statement(
@@ -128,7 +127,7 @@ CLAIMS = (
         ),
         ("s6-scaling", "s6n-AB"),
     ),
-    claim(
+    claim_beyond(
         "b:onset",
         "where a_c < 0 elsewhere one orbit is born, superstable: a hop at A, chatter to A + (1 + X)H, rest",
         Statement(

@@ -5,12 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 from singimpact.algebra.certificates import positive_on
-from singimpact.paper.claims.claim import Check, Statement, in_section
+from singimpact.paper.claims.claim import Check, Statement, claim_beyond
 from singimpact.paper.claims.sections.section4b import SLACK
 from singimpact.paper.claims.verifiers import every, same
 from singimpact.paper.routes.implicit import r
-
-claim = in_section("beyond")
 
 
 def _below_one(stated: tuple[Any, Any]) -> Check:
@@ -28,7 +26,7 @@ def _below_one(stated: tuple[Any, Any]) -> Check:
 
 
 CLAIMS = (
-    claim(
+    claim_beyond(
         "b:ratio-bound",
         "r (4 - r) < 2 + r for 0 < r < 1, so q~/p~ < M < 1 follows from the corrected bounds of section 4(b)",
         Statement(r"r(4-r)<2+r,\ 0<r<1", (r * (4 - r), 2 + r)),

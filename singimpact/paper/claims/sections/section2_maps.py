@@ -9,9 +9,7 @@ import sympy
 from singimpact.paper.claims.claim import Check, Statement, in_section
 from singimpact.paper.claims.sections.section2_trials import TRIALS as TRIALS
 from singimpact.paper.claims.verifiers import every, identity, is_zero
-from singimpact.paper.routes import implicit as route
-from singimpact.paper.routes import unfolding as model
-from singimpact.paper.routes import variations
+from singimpact.paper.routes import implicit as route, unfolding as model, variations
 from singimpact.paper.routes.implicit import a_symbol, sigma, t, v
 from singimpact.paper.trials import surfaces
 from singimpact.theory.impact_sheet import generic_sheet

@@ -15,8 +15,7 @@ from singimpact.contact.contact import rest_acceleration
 from singimpact.paper.claims.claim import Check, Claim, Statement
 from singimpact.paper.claims.sections.section4_trials import TRIALS as TRIALS
 from singimpact.paper.claims.verifiers import every, identity, is_zero, same
-from singimpact.paper.routes import fold
-from singimpact.paper.routes import implicit as route
+from singimpact.paper.routes import fold, implicit as route
 from singimpact.paper.routes.implicit import X, Y, a_symbol, f_symbol, sigma, t, v
 from singimpact.paper.trials import crosscheck
 from singimpact.theory.impact_sheet import generic_sheet

@@ -12,8 +12,7 @@ from singimpact.paper.claims.sections import section4_orbits as orbits
 from singimpact.paper.claims.sections.section4_trials import TRIALS as TRIALS
 from singimpact.paper.claims.sections.section4a_blowup import HALF, THREE_HALVES
 from singimpact.paper.claims.verifiers import every, is_zero, same
-from singimpact.paper.routes import fold
-from singimpact.paper.routes import implicit as route
+from singimpact.paper.routes import fold, implicit as route
 from singimpact.paper.routes.fold import m
 from singimpact.paper.routes.implicit import a_symbol, t, v
 from singimpact.paper.trials import arcs, true_orbits

@@ -11,8 +11,7 @@ from singimpact.algebra.derivations import At, substitution
 from singimpact.paper.claims.claim import Check, Statement, in_section
 from singimpact.paper.claims.sections.section4b_trials import TRIALS as TRIALS
 from singimpact.paper.claims.verifiers import every, identity, is_zero, same
-from singimpact.paper.routes import fold
-from singimpact.paper.routes import implicit as route
+from singimpact.paper.routes import fold, implicit as route
 from singimpact.paper.routes.fold import k
 from singimpact.paper.routes.implicit import X, Y, a_symbol, r, sigma, t
 from singimpact.paper.trials import leaves

@@ -16,8 +16,7 @@ from singimpact.paper.claims.sections.section6_exact import epsilon_check
 from singimpact.paper.claims.sections.section6_scaling import at, crossing, near_the_swan, regular_conic, scaling_check
 from singimpact.paper.claims.sections.section6_trials import TRIALS as TRIALS
 from singimpact.paper.claims.verifiers import every, is_zero, same
-from singimpact.paper.routes import scaling
-from singimpact.paper.routes import unfolding as model
+from singimpact.paper.routes import scaling, unfolding as model
 from singimpact.paper.routes.implicit import v_c_swan
 from singimpact.paper.routes.scaling import WEIGHTS, Weights
 from singimpact.paper.routes.unfolding import kappa, sigma, t

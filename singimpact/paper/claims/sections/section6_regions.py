@@ -13,8 +13,7 @@ from singimpact.paper.claims.sections.section6 import claim_6
 from singimpact.paper.claims.sections.section6_negative import cusp_above
 from singimpact.paper.claims.sections.section6_scaling import crossing, near_the_swan
 from singimpact.paper.claims.verifiers import every, is_zero, same
-from singimpact.paper.routes import scaling
-from singimpact.paper.routes import unfolding as model
+from singimpact.paper.routes import scaling, unfolding as model
 from singimpact.paper.routes.unfolding import kappa, sigma, t
 from singimpact.paper.trials import universal_orbits
 

@@ -17,8 +17,7 @@ import sympy
 from singimpact.algebra.certificates import definite
 from singimpact.paper.claims.claim import Check
 from singimpact.paper.claims.verifiers import every, same
-from singimpact.paper.routes import scaling
-from singimpact.paper.routes import unfolding as model
+from singimpact.paper.routes import scaling, unfolding as model
 from singimpact.paper.routes.scaling import Weights
 from singimpact.paper.routes.unfolding import kappa, sigma, t
 
