@@ -11,7 +11,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from singimpact.inputs import InputError, shown
+from singimpact.inputs import InputError, refuse, shown
 
 DRAFT = ".draft-"
 
@@ -67,6 +67,8 @@ def write_table(path: str | Path, columns: Mapping[str, Iterable[Any]]) -> None:
     """
     import csv
 
+    if Path(path).suffix.lower() in (".xlsx", ".xls", ".ods", ".parquet", ".json", ".npz"):
+        raise refuse("path", str(path), "a name that ends in .csv: comma-separated values are written")
     with written(path) as draft, draft.open("w", encoding="utf-8", newline="") as stream:
         lines = csv.writer(stream, lineterminator="\n")
         lines.writerow(columns)

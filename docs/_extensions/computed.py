@@ -171,11 +171,11 @@ def manifolds(place: Path) -> None:
     osc = si.linear("2.8", "0.1", "0.8", amplitude=-1)
     saddle = next(orbit for orbit in osc.periodic(3, 3) if not orbit.stable)
     both = [si.manifold(saddle, stable, v=1) for stable in (True, False)]
-    over = si.plot(both, axes=si.plot(si.basins(osc, ((0, "2*pi/2.8"), (0, 1)), 600)))
+    over = si.plot(both, ax=si.plot(si.basins(osc, ((0, "2*pi/2.8"), (0, 1)), 600)))
     over.figure.savefig(place / "manifold_basins.png", dpi=110)
     found = si.homoclinic_points(si.linear("2.8", 0, "0.8").periodic(1, 1)[0])
     si.plot(found).figure.savefig(place / "manifold_tangle.png", dpi=110)
-    certified = si.plot(found[0].certified(), axes=si.plot(list(found.manifolds)))
+    certified = si.plot(found[0].certified(), ax=si.plot(list(found.manifolds)))
     certified.figure.savefig(place / "manifold_certified.png", dpi=110)
     si.plot(found[0].horseshoe()).figure.savefig(place / "manifold_horseshoe.png", dpi=110)
 

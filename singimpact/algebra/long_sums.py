@@ -300,7 +300,11 @@ def _polynomial_written(total: Any) -> str | None:
         terms.append((coefficient, dict(powers)))  # type: ignore[arg-type]
     names = sorted({name for _, powers in terms for name in powers})
     terms.sort(key=lambda pair: [-pair[1].get(name, 0) for name in names])
-    parts = [(int(c.p), int(c.q), _monomial_written(powers)) for c, powers in terms]
+    monomials = [
+        "*".join(name if powers[name] == 1 else f"{name}**{powers[name]}" for name in sorted(powers))
+        for _, powers in terms
+    ]
+    parts = [(int(c.p), int(c.q), monomial) for (c, _), monomial in zip(terms, monomials, strict=True)]
     first = _term_written(*parts[0])
     return (
         ("-" if parts[0][0] < 0 else "")
@@ -316,10 +320,6 @@ def _power_of(factor: Any) -> tuple[str, int] | None:
     if factor.is_Pow and type(factor.base) is sympy.Symbol and factor.exp.is_Integer and factor.exp > 0:
         return factor.base.name, int(factor.exp)
     return None
-
-
-def _monomial_written(powers: Mapping[str, int]) -> str:
-    return "*".join(name if powers[name] == 1 else f"{name}**{powers[name]}" for name in sorted(powers))
 
 
 def _term_written(above: int, below: int, monomial: str) -> str:

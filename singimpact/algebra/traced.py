@@ -51,7 +51,7 @@ class Letter:
             raise InputError(refused_function(name))
         return lambda: Letter(function(self.tree))
 
-    def decided(self, *_: Any) -> Any:
+    def decided(self, *_: object) -> object:
         """Refuse what needs a value."""
         raise InputError("this needs the value of a number, which has none while the formula is read")
 
@@ -65,7 +65,7 @@ for _name in DECIDING:
     setattr(Letter, f"__{_name}__", Letter.decided)
 
 
-def _tree(value: Any) -> Expression:
+def _tree(value: object) -> Expression:
     """The tree of a number in a function; a float is the shortest decimal that rounds to it, as it is written there."""
     plain = value.item() if isinstance(value, np.generic | np.ndarray) and not value.shape else value
     if isinstance(plain, Letter):
@@ -87,7 +87,7 @@ def _of_letters(function: Any) -> Callable[..., Any]:
     return called
 
 
-def _read(part: Any) -> Any:
+def _read(part: object) -> object:
     """A global of a function, where `math` and its functions take letters."""
     if part is math:
         return types.SimpleNamespace(**{name: _read(value) for name, value in vars(math).items()})
@@ -137,7 +137,7 @@ def _with_letters(function: Any) -> Any:
     return made
 
 
-def _line(error: BaseException, function: Any) -> str:
+def _line(error: BaseException, function: object) -> str:
     """The last line of the function's file on the way to an error."""
     file = getattr(getattr(function, "__code__", None), "co_filename", None)
     lines = [frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename == file]

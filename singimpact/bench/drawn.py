@@ -88,11 +88,6 @@ def _far(rng: Any, family: str, restitution: float, count: int) -> tuple[Array, 
     return rng.uniform(-1e6, 1e6, count), rng.uniform(0.05, 2, count)
 
 
-def _chattering(rng: Any, family: str, restitution: float, count: int) -> tuple[Array, Array]:
-    """Where a_c presses, and so slow that the impacts accumulate before it ceases to."""
-    return _pressed(rng, family, count), (1 - restitution) * rng.uniform(0.01, 0.05, count)
-
-
 def _pressed(rng: Any, family: str, count: int) -> Array:
     """Phases in the middle of the time that a_c presses, less some for the force of Duffing's model."""
     begin, end = pressing(family)
@@ -109,7 +104,11 @@ KINDS: dict[str, Callable[[Any, str, float, int], tuple[Array, Array]]] = {
     "generic": _generic,
     "v from 1e-8 to 1e-2": _slow,
     "tau within 1e6": _far,
-    "chattering": _chattering,
+    # where a_c presses, and so slow that the impacts accumulate before it ceases to
+    "chattering": lambda rng, family, restitution, count: (
+        _pressed(rng, family, count),
+        (1 - restitution) * rng.uniform(0.01, 0.05, count),
+    ),
 }
 BEGUN = 10  # impacts that have been flown from random states before an iterated map is timed
 

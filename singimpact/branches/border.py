@@ -280,7 +280,7 @@ class _Search:
         at = self._flown(value, index, phases)
         entry = at.entry(at.place) if at.place else 0
         reach = max(value - self.values[0], self.values[-1] - value)
-        near = self._phases(value, phases)
+        near = self.releases.followed(self.releases.model(value), phases)
         self.found.append(Return(self.releases, value, near, index, at.place, entry, side, reach))
         gap = SETTINGS.away * self.spacing
         beside = [(end, self._flown(end, index, phases)) for end in (value - gap, value + gap)]
@@ -288,9 +288,6 @@ class _Search:
 
     def _flown(self, value: float, index: int, phases: tuple[float, ...]) -> Released:
         return self.releases.flown(value, index, phases)
-
-    def _phases(self, value: float, near: tuple[float, ...]) -> tuple[float, ...]:
-        return self.releases.followed(self.releases.model(value), near)
 
     def orbits(self) -> list[BorderOrbit]:
         """The border orbits, each once."""

@@ -164,6 +164,16 @@ class PeriodicOrbits(Results, list[PeriodicOrbit]):
         super().__init__(orbits)
         self._doubts, self._notes = doubts, notes
 
+    if not TYPE_CHECKING:
+
+        def __getitem__(self, index: Any) -> Any:
+            """An orbit; where there is none, an IndexError that says how many there are and why."""
+            try:
+                return super().__getitem__(index)
+            except IndexError:
+                notes = " ".join(self.notes) or "others, with other n and k, may attract: si.basins shows which do"
+                raise IndexError(f"there is no orbit {index} of these {len(self)}: {notes}") from None
+
     @property
     def doubts(self) -> Sentences:
         """Why there may be others; empty where it is shown that there are none. The proof runs when this is read."""

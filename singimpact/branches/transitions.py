@@ -292,7 +292,9 @@ class _Search:
     def found(self) -> OrbitTransitions:
         """The transitions with intervals and branches."""
         low, high = self.ends
-        inner = {change.value for change in self.transitions if low < change.value < high and _parts(change)}
+        # orbits are listed on both sides of these
+        parting = [change for change in self.transitions if change.visible or change.event not in SEEN_ALONE]
+        inner = {change.value for change in parting if low < change.value < high and change.event != "periodic graze"}
         edges = [low, *sorted(inner), high]
         middles = [(one + other) / 2 for one, other in pairwise(edges)]
         extra = np.linspace(low, high, SETTINGS.samples + 2)[1:-1].tolist()
@@ -352,11 +354,6 @@ class _Search:
                 if not any(_same(change, other) for other in seen):
                     seen.append(change)
         return seen
-
-
-def _parts(found: Transition) -> bool:
-    """Whether orbits are listed on both sides of a transition."""
-    return found.event != "periodic graze" and (found.event not in SEEN_ALONE or bool(found.visible))
 
 
 def _same(one: OrbitChange, other: OrbitChange) -> bool:

@@ -23,15 +23,7 @@ from singimpact.flights.causes import decoded
 from singimpact.flights.compiled_model import compiled_model
 from singimpact.flights.derivative import derivative
 from singimpact.flights.impact_map import checked_digits, impact_map
-from singimpact.flights.kernels.chatter import (
-    CLOSE,
-    COMPLETED,
-    EXHAUSTED,
-    LIFTED,
-    NO_ROOM,
-    REPEATS,
-    TOO_WIDE,
-)
+from singimpact.flights.kernels.chatter import CLOSE, COMPLETED, EXHAUSTED, LIFTED, NO_ROOM, REPEATS, TOO_WIDE
 from singimpact.flights.orbits import Segment, orbit_segment
 from singimpact.flights.states import States
 from singimpact.inputs import whole

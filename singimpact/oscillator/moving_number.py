@@ -38,7 +38,10 @@ def with_number(osc: Oscillator, name: str) -> Oscillator:
     if name in (CLEARANCE, RESTITUTION) or name in osc.parameters:
         return osc
     if name not in LINEAR:
-        raise unknown("number of the model", str(name), [CLEARANCE, RESTITUTION, *osc.parameters, *LINEAR])
+        error = unknown("number of the model", str(name), [CLEARANCE, RESTITUTION, *osc.parameters, *LINEAR])
+        raise InputError(
+            f"{error}; a number in f or g has a name if it is a parameter, cos({name}*t) with {{'{name}': 2}}"
+        )
     letter, f, g = Name(name), osc.f, osc.g
     if name == "amplitude":
         g = multiply(letter, g)

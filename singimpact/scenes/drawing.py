@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Sequence
 from typing import Any
+
+import numpy as np
 
 from singimpact.branches.border import BorderOrbit
 from singimpact.branches.branch import Branch
@@ -17,7 +20,7 @@ from singimpact.dynamics.basins_of_attraction import Basins
 from singimpact.dynamics.bifurcation_diagram import Bifurcation
 from singimpact.dynamics.orbit import Orbit
 from singimpact.dynamics.sampling import Section
-from singimpact.inputs import checked_keywords, refuse
+from singimpact.inputs import InputError, checked_keywords, refuse
 from singimpact.scenes.basins_picture import draw_basins, draw_both_sides
 from singimpact.scenes.border_picture import draw_border
 from singimpact.scenes.branch_picture import draw_bifurcation, draw_branches, draw_event_curves
@@ -33,7 +36,7 @@ LETTERS = {"tau": r"time $\tau$", "t": "flight time $t$", "v": "velocity $v$"}
 
 
 @checked_keywords
-def plot(thing: Any, axes: Any = None, *, height: str = "v") -> Any:
+def plot(thing: Any, ax: Any = None, *, height: str = "v", **style: object) -> Any:
     """Draw a thing and return the matplotlib axes.
 
     Parameters
@@ -42,18 +45,48 @@ def plot(thing: Any, axes: Any = None, *, height: str = "v") -> Any:
         them, W^s or W^u of a saddle or a list of them, the points where two cross, a certified orbit in which they do,
         a certified horseshoe, a border orbit, of which the cascade is drawn, both sides of a transition (on two axes),
         a curve or a list of curves of one plane, or an impact surface, of which Z and H are drawn.
-    axes : where to draw; those of a new figure of pyplot when it is not given, so that a notebook shows it and
+    ax : where to draw; those of a new figure of pyplot when it is not given, so that a notebook shows it and
         `matplotlib.pyplot.show()` does. Branches drawn on the axes of a bifurcation diagram keep its limits, and so do
         manifolds on those of basins, and a certified orbit on those of manifolds.
     height : of branches and bifurcation diagrams: "v", velocities after the impacts, or "phase", their phases in
         periods. A branch of orbits without impact alone is shown by its lowest x - c, beside others at v = 0.
+    style : properties of matplotlib for all lines and points that are drawn, such as color, linewidth or alpha.
 
     Examples
     --------
     >>> from singimpact.impact_oscillator import linear
-    >>> plot(linear("2.8", 0, "0.8").orbit(0.9, 0.3, impacts=5)).get_xlabel()
-    'time $t$'
+    >>> axes = plot(linear("2.8", 0, "0.8").orbit(0.9, 0.3, impacts=5), color="black", linewidth=2)
+    >>> axes.get_xlabel(), axes.lines[0].get_color()
+    ('time $t$', 'black')
     """
+    if "axes" in style:
+        warnings.warn("plot(axes=...) is plot(ax=...) now", FutureWarning, stacklevel=3)
+        ax = style.pop("axes")
+    before = [] if ax is None else ax.get_children()
+    axes = _drawn(thing, ax, height)
+    if style:
+        from matplotlib.collections import Collection
+        from matplotlib.lines import Line2D
+
+        after = [child for each in np.ravel(axes) for child in each.get_children() if child not in before]
+        _styled([child for child in after if isinstance(child, Line2D | Collection)], style)
+    return axes
+
+
+def _styled(artists: Sequence[Any], style: dict[str, object]) -> None:
+    """Set properties of the artists that have them."""
+    for name, value in style.items():
+        having = [artist for artist in artists if hasattr(artist, f"set_{name}")]
+        if not having:
+            raise InputError(f"plot has no argument {name!r}: give thing, ax, height, or a property of lines or points")
+        try:
+            for artist in having[: 1 if name == "label" else None]:
+                artist.set(**{name: value})
+        except (TypeError, ValueError):
+            raise refuse(name, value, f"what matplotlib takes as {name}") from None
+
+
+def _drawn(thing: Any, axes: Any, height: str) -> Any:
     if isinstance(thing, Scene):
         return thing.draw(axes)
     if isinstance(thing, ImpactSurface):

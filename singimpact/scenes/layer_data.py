@@ -108,13 +108,14 @@ def _stored(line: NamedLine) -> Curve:
     return Curve("lines", points, SURFACE, line.marks, line.closed, line.tolerance)
 
 
-def _restored(curve: Curve) -> NamedLine:
-    return NamedLine(curve.points[:, :2], curve.points[:, 2], curve.closed, curve.tolerance, curve.marks)
-
-
 def _of_surface(name: str) -> Callable[[Results], list[Curve]]:
     def compute(results: Results) -> list[Curve]:
-        known: dict[str, list[Any]] = {"lines": [_restored(curve) for curve in results.get("lines")]}
+        known: dict[str, list[Any]] = {
+            "lines": [
+                NamedLine(curve.points[:, :2], curve.points[:, 2], curve.closed, curve.tolerance, curve.marks)
+                for curve in results.get("lines")
+            ]
+        }
         if "visible" in results.found:
             known["horizon"] = results.found["visible"]
         results.surface.take(**known)

@@ -145,7 +145,10 @@ def transitions(model: Oscillator, over: str, between: Any, t: Any = (-6, 6), ki
     if "tangency" in wanted:
         events += _tangencies(family, values, times)
     events += _with_more_rests(family, times, ends, wanted)
-    visible_events = [told(event, family.at(event.value)) for event in events if _kind_of(event) in wanted]
+    kinds_met = ["tangency" if event.event.startswith("tangency") else event.event for event in events]
+    visible_events = [
+        told(event, family.at(event.value)) for event, kind in zip(events, kinds_met, strict=True) if kind in wanted
+    ]
     result = Transitions(sorted(visible_events, key=lambda event: (event.value, event.tau, event.t)))
     result.notes = notes if {"swan", "swallowtail"} & wanted else ()
     result._proof = partial(_doubts, family, ends, times, wanted, tuple(swans))
@@ -161,10 +164,6 @@ def _kinds(given: Any) -> frozenset[str]:
     if unknown:
         raise refuse("kinds", unknown[0], f"some of {', '.join(KINDS)}")
     return frozenset(asked)
-
-
-def _kind_of(found: Transition) -> str:
-    return "tangency" if found.event.startswith("tangency") else found.event
 
 
 def _doubts(

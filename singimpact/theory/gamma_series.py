@@ -239,11 +239,9 @@ class _Solver:
         """The factor of tau_level in rebound - landing: never zero for lambda in (0, 1)."""
         j, power = self.j, self.lambda_**self.j
         landing = self.launch_tangent * (power * self.lambda_ ** (level + 1)) + self.launch[0] * (power * (j + 1))
-        return self._scalar(self.impact_tangent * self.r * -1 - landing)
-
-    def _scalar(self, value: Any) -> Any:
-        """A number of the prime field: over symbols with a_j = 1 the divisor is one."""
-        return value.coeffs()[0] if hasattr(value, "is_constant") else value
+        divisor = self.impact_tangent * self.r * -1 - landing
+        # over symbols with a_j = 1 it is a number of the prime field
+        return divisor.coeffs()[0] if hasattr(divisor, "is_constant") else divisor
 
     def _correct(self, level: int, tau: Any) -> None:
         """Put tau_level into every table that knew it as zero."""

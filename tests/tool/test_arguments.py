@@ -62,3 +62,45 @@ def test_an_error_inside_stays_what_it_is():
 
     with pytest.raises(TypeError, match="unsupported operand"):
         checked_keywords(inner)(1)
+
+
+@pytest.mark.parametrize(
+    ("call", "why"),
+    [
+        (lambda orbit: orbit.to_csv("orbit.xlsx"), "a name that ends in .csv"),
+        (lambda orbit: si.plot(orbit, colour="red"), "plot has no argument 'colour'"),
+        (lambda orbit: si.plot(orbit, color="no such colour"), "color = 'no such colour' is not accepted"),
+        (
+            lambda _: si.bifurcation(si.ImpactOscillator("x", "cos(2*t)", 0, 1), "omega", (1, 2)),
+            "has a name if it is a parameter, cos.omega.t. with",
+        ),
+    ],
+)
+def test_a_mistake_with_a_result_is_told(call, why):
+    with pytest.raises(InputError, match=why):
+        call(si.linear(2, 0, "1/2").orbit(0.1, 0.2, 3))
+
+
+def test_a_list_of_orbits_says_why_there_is_none():
+    none = si.linear(2, 0, "1/2").periodic(7, 1)
+    assert len(none) == 0
+    with pytest.raises(IndexError, match="there is no orbit 0 of these 0: ") as refusal:
+        none[0]
+    assert all(note in str(refusal.value) for note in none.notes)
+
+
+def test_styles_go_to_lines_and_the_old_name_of_the_axes_still_works():
+    orbit = si.linear(2, 0, "1/2").orbit(0.1, 0.2, 3)
+    axes = si.plot(orbit, color="red", linewidth=3, label="mine")
+    assert {line.get_color() for line in axes.lines} == {"red"}
+    assert [line.get_label() for line in axes.lines].count("mine") == 1
+    before = len(axes.lines)
+    with pytest.warns(FutureWarning, match=r"plot\(ax=...\)"):
+        again = si.plot(orbit, axes=axes, color="blue")
+    assert again is axes
+    assert [line.get_color() for line in axes.lines[:before]] == ["red"] * before
+    assert {line.get_color() for line in axes.lines[before:]} == {"blue"}
+
+
+def test_a_figure_has_the_name_of_its_number():
+    assert si.figure("12").axes

@@ -83,7 +83,9 @@ def cases(effort: Effort) -> Iterator[Case]:
         few,
         lambda n: LINEAR.first_hit(0, 1, digits=n),
         _line("mpmath findroot", few, partial(_at_digits, closed)),
-        [] if short else _line("mpmath odefun", few[:3], partial(_at_digits, _integrated)),
+        []
+        if short
+        else _line("mpmath odefun", few[:3], partial(_at_digits, partial(many_digits.root_of_odefun, family="linear"))),
     )
     states = (1000, 3000, 10_000) if short else (1000, 3000, 10_000, 30_000, 100_000)
     yield _grown(
@@ -171,10 +173,6 @@ def _at_digits(fly: Callable[[Problem], Any], digits: int) -> None:
 
     with mpmath.workdps(digits):
         fly(START)
-
-
-def _integrated(problem: Problem) -> Any:
-    return many_digits.root_of_odefun(problem, "linear")
 
 
 def _flown_array(count: int, periods: float = 3 / PERIOD) -> Any:

@@ -61,6 +61,9 @@ def _judge(flown: Flown, places: Array, tally: Tally) -> None:
     osc, step, horizon = flown.osc, flown.step, flown.scales.horizon
     back = osc.inverse_map(step.tau[places], step.v[places], horizon=2 * horizon)
     (by_tau, by_v), trip = allowed(flown, places)
+    # where rho is no number inverse_map may take another of the velocities that rebound alike
+    with np.errstate(invalid="ignore"):
+        other_branch = trip & (np.abs(back.velocity - step.velocity[places]) > 1e-6 * np.abs(step.velocity[places]))
     for at, index in enumerate(places.tolist()):
         tau, v, time = flown.tau[index], flown.v[index], step.flight_time[index]
         status = Status(int(back.status[at]))
@@ -71,17 +74,12 @@ def _judge(flown: Flown, places: Array, tally: Tally) -> None:
             tally.leave("unresolved")
         elif by_v[at] > ROUND_TRIP.lost * v or by_tau[at] > ROUND_TRIP.lost * time:
             tally.leave("rounding explains any difference")
-        elif _other_branch(step.velocity[index], back.velocity[at], trip):
+        elif other_branch[at]:
             tally.leave("another velocity rebounds alike")
         elif status != Status.hit:
             tally.judge(np.inf, state)
         else:
             tally.judge(max(abs(back.tau[at] - tau) / by_tau[at], abs(back.v[at] - v) / by_v[at]), state)
-
-
-def _other_branch(velocity: float, before: float, trip: bool) -> bool:
-    """Whether rho is no number and inverse_map took another of the velocities that rebound alike."""
-    return trip and abs(before - velocity) > 1e-6 * abs(velocity) and not np.isnan(before)
 
 
 def allowed(flown: Flown, places: Array) -> tuple[tuple[Array, Array], bool]:

@@ -143,10 +143,6 @@ def _first_hit(launch: Launch) -> Trial:
     return Trial(str(launch), found, [true.time, true.velocity], true.moved(sizes(launch, true.time)))
 
 
-def _impact_map(launch: Launch) -> Trial:
-    return _stepped(launch, launch.model.impact_map(launch.tau, launch.v, horizon=launch.horizon))
-
-
 def _stepped(launch: Launch, step: Any) -> Trial:
     import flint
 
@@ -263,7 +259,12 @@ def _chained(launch: Launch, tau: Any, v: Any) -> Trial | None:
 BALLS = "balls of bench/truth"
 FUNCTIONS = (
     Function("first_hit", _sweeps(_first_hit), BALLS, ""),
-    Function("impact_map", _sweeps(_impact_map), BALLS, ""),
+    Function(
+        "impact_map",
+        _sweeps(lambda at: _stepped(at, at.model.impact_map(at.tau, at.v, horizon=at.horizon))),
+        BALLS,
+        "",
+    ),
     Function(
         "flight",
         _sweeps(_flight, ("r -> 0", "r -> 1", "steep layers")),

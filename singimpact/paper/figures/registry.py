@@ -77,6 +77,7 @@ def picture(number: Any) -> Picture:
     ------
     InputError : neither a number from 1 to 17 nor a name of `BEYOND`.
     """
+    number = int(number) if isinstance(number, str) and number.isdecimal() else number
     if isinstance(number, bool) or not isinstance(number, int | str) or number not in (*FIGURES, *BEYOND):
         raise refuse("figure", number, ACCEPTED)
     return _function(number)()

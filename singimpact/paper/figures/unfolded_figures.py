@@ -189,13 +189,7 @@ def figure_17() -> Picture:
         for side, branch, label in (("right", branches[0], n == 1), ("left", branches[1], False))
     ]
     lines += [
-        Line(
-            points,
-            "preimage",
-            f"G^-{n}(delta)",
-            at=0.6,
-            words=rf"$G^{{-n}}(\delta)$, $n \leq {GENERATIONS}$",
-        )
+        Line(points, "preimage", f"G^-{n}(delta)", at=0.6, words=rf"$G^{{-n}}(\delta)$, $n \leq {GENERATIONS}$")
         for n, points in enumerate(_preimages(frame), 1)
     ]
     lines.append(Line(delta(), "jump", "delta", r"$\delta$", 0.75, words=r"$\delta$: $G$ is discontinuous"))

@@ -277,13 +277,7 @@ def gamma_cases(j: int) -> tuple[GammaCase, ...]:
     start = context.mpf(10) ** -25
     cases.append(
         gamma_case(
-            f"linear, {where}, closed form in 40 digits and more",
-            LINEAR,
-            a_j,
-            j,
-            flow,
-            start,
-            context.mpf(10) ** -40,
+            f"linear, {where}, closed form in 40 digits and more", LINEAR, a_j, j, flow, start, context.mpf(10) ** -40
         )
     )
     return tuple(cases)

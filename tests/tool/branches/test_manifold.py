@@ -321,7 +321,7 @@ def test_drawn_alone_and_over_basins(found: si.basins, bounding: Manifold) -> No
     assert labels == ["$W^s$ of the (3, 3) saddle", "cut by a graze", "saddle"]
     axes = si.plot(found)
     limits = axes.get_xlim(), axes.get_ylim()
-    both = si.plot([bounding, si.manifold(bounding.saddle, stable=False, v=1)], axes=axes)
+    both = si.plot([bounding, si.manifold(bounding.saddle, stable=False, v=1)], ax=axes)
     assert (both.get_xlim(), both.get_ylim()) == limits
     labels = [text.get_text() for text in both.get_legend().get_texts()]
     assert labels[0].startswith("(3, 3) orbit")

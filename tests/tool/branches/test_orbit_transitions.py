@@ -189,4 +189,4 @@ def test_sides_that_are_none(waves: OrbitTransitions) -> None:
     with pytest.raises(InputError, match="apart = 0"):
         waves.both_sides(0, apart=0)
     with pytest.raises(InputError, match="two: those before and after"):
-        si.plot(waves.both_sides(0, size=2), axes=si.plot(si.linear(2, 0, 1).orbit(0.1, 0.5, impacts=2)))
+        si.plot(waves.both_sides(0, size=2), ax=si.plot(si.linear(2, 0, 1).orbit(0.1, 0.5, impacts=2)))

@@ -110,7 +110,7 @@ def test_branches_over_a_bifurcation_diagram(branch) -> None:
     osc = si.linear("0.8", -1, "0.8", damping="0.1", amplitude="-0.45")
     axes = si.plot(si.bifurcation(osc, "amplitude", ("-0.55", "-0.4"), points=5, impacts=60, kept=3))
     limits = axes.get_xlim(), axes.get_ylim()
-    same = si.plot(branch, axes=axes)
+    same = si.plot(branch, ax=axes)
     assert same is axes
     assert (axes.get_xlim(), axes.get_ylim()) == limits
     words = [text.get_text() for text in axes.get_legend().get_texts()]

@@ -174,11 +174,7 @@ def _smaller(power: int) -> Check:
     """mu < r^(-1) for every j, stated as l^(j power) (P/Q)^3 < 1."""
     product = L * V**3  # r mu, with V for P/Q: (l L V)(V^2/l)
     return every(
-        [
-            *multipliers(),
-            ("r mu = l^j (P/Q)^3", same(ell * L * V * V**2 / ell, product)),
-            *rising(power),
-        ],
+        [*multipliers(), ("r mu = l^j (P/Q)^3", same(ell * L * V * V**2 / ell, product)), *rising(power)],
         witness=lambda: {"power": str(power)},
     )
 
@@ -189,10 +185,7 @@ def _exponents(power: int) -> Check:
     return every(
         [
             *multipliers(),
-            (
-                f"det DG = l^(j+1) (P/Q)^{power} on gamma, along it the multiplier is l; from DG at j = 1, 2, 3",
-                scaled,
-            ),
+            (f"det DG = l^(j+1) (P/Q)^{power} on gamma, along it the multiplier is l; from DG at j = 1, 2, 3", scaled),
             *rising(),
             ("l^j (P/Q)^2 is smaller than l^j (P/Q)^3 as P > Q", scaled and _saddle(1).holds),
         ],

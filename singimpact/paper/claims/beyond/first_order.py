@@ -116,10 +116,7 @@ CLAIMS = (
     claim_beyond(
         "b:first-order-foot",
         "an unfolded swan tends to the universal one at first order in H, with a term that is known for every r",
-        Statement(
-            r"X_H=X-\tfrac{1}{10}\Bigl(f_v+\frac{2a'''}{3a''}\Bigr)(X^2-1)H+O(H^2)",
-            -CHI * (X**2 - 1) / 10,
-        ),
+        Statement(r"X_H=X-\tfrac{1}{10}\Bigl(f_v+\frac{2a'''}{3a''}\Bigr)(X^2-1)H+O(H^2)", -CHI * (X**2 - 1) / 10),
         _shifted,
         (
             CHI * (X**2 - 1) / 10,
@@ -135,12 +132,7 @@ CLAIMS = (
         "five oscillators, three values of r: the error is of order 1, and of order 2 without that term",
         Statement(r"X_H-X\sim H,\quad X_H-X+\tfrac{1}{10}\chi(X^2-1)H\sim H^2", (1, 2, -(X**2 - 1) / 10)),
         _orders,
-        (
-            (2, 2, -(X**2 - 1) / 10),
-            (1, 2, (X**2 - 1) / 10),
-            (1, 2, -(X**2 - 1) / 9),
-            (1, 1, -(X**2 - 1) / 10),
-        ),
+        ((2, 2, -(X**2 - 1) / 10), (1, 2, (X**2 - 1) / 10), (1, 2, -(X**2 - 1) / 9), (1, 1, -(X**2 - 1) / 10)),
         ("b:first-order-foot",),
     ),
 )

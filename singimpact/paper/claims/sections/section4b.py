@@ -124,10 +124,7 @@ def _sector(stated: tuple[Any, Any]) -> Check:
                 f"v = -k t ({launch}), so for k < 0 and t > 0 v >= 0 where {launch} >= 0",
                 same(launch, factor * sigma + t) and least == 0,
             ),
-            (
-                f"dv/dt = -k ({launch} + t) > 0 inside, so there p is one to one for each sigma",
-                same(rise, launch + t),
-            ),
+            (f"dv/dt = -k ({launch} + t) > 0 inside, so there p is one to one for each sigma", same(rise, launch + t)),
         ]
     )
 
@@ -344,10 +341,7 @@ def _contracted(stated: Any) -> Check:
     limit = sympy.cancel(landed / launch)
     return every(
         [
-            (
-                "0 < lim q~/p~ < 1 for l > 0, 0 < r < 1",
-                _positive_for_all(limit) and _positive_for_all(stated - limit),
-            ),
+            ("0 < lim q~/p~ < 1 for l > 0, 0 < r < 1", _positive_for_all(limit) and _positive_for_all(stated - limit)),
             ("1 is reached as l -> 0, r -> 1, and no smaller bound serves all", limit.subs({ell: 0, r: 1}) == stated),
         ]
     )

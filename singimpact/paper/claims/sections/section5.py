@@ -199,10 +199,7 @@ def _unique(stated: tuple[Any, int]) -> Check:
                 + orbits.after(2)[1][0],
                 orbits.after(2) == ("chatter", orbits.after(2)[1]) and orbits.after(2)[1][1],
             ),
-            (
-                f"{arcs} such arcs: gamma{' and Pi_0 (m = 0)' if with_axis else ''}; stated: {count}",
-                arcs == count,
-            ),
+            (f"{arcs} such arcs: gamma{' and Pi_0 (m = 0)' if with_axis else ''}; stated: {count}", arcs == count),
         ],
         modulo=(orbits.STABLE,),
         witness=lambda: {"arc": "{v = 0, tau < tau_*}", "v": "0", "invariant arcs found": str(arcs)},
@@ -314,10 +311,7 @@ def _others(stated: str) -> Check:
         return name, found.largest < 0 and found.lost == 0
 
     return every(
-        [
-            *orbits.before(2),
-            (reason[0], reason[1] and {below, behind} == {stated}),
-        ],
+        [*orbits.before(2), (reason[0], reason[1] and {below, behind} == {stated})],
         modulo=(orbits.STABLE,),
         tried=trial,
     )
@@ -488,10 +482,7 @@ CLAIMS = (
         _limit,
         (sympy.Integer(2), lambda_, eigenvalues_on_gamma(2)[1]),
         ("t:t3-repelling",),
-        lambda: Statement(
-            limit_in_words(2),
-            eigenvalues_on_gamma(2)[0],
-        ),
+        lambda: Statement(limit_in_words(2), eigenvalues_on_gamma(2)[0]),
     ),
     _claim(
         "t:t3-others",

@@ -145,7 +145,7 @@ def interval_check(stated: tuple[tuple[Any, Any], tuple[Any, Any]]) -> Check:
         [
             (
                 "where v = 0 x - c is kappa u^2 Z(sigma, u), so the first hit is the first positive u with Z(sigma, u) = 0",
-                _rest_height(),
+                same(model.height(u), model.launch_velocity() * u + kappa * u**2 * model.zero_set().subs(t, u)),
             ),
             (
                 "the two values of t on Z have a negative product for -1 < sigma < 1, so one is positive",
@@ -157,11 +157,6 @@ def interval_check(stated: tuple[tuple[Any, Any], tuple[Any, Any]]) -> Check:
     conditions = [(f"dZ/dt at {name}", at(rise, end)) for name, end in (("C", model.C), ("B", model.B))]
     across = [(f"dZ/dsigma at {n}", at(sympy.diff(conic, sigma), p)) for n, p in (("A", model.A), ("B", model.B))]
     return near_the_swan(check, [*conditions, *across, ("Z has a definite form", definite(conic + 6, sigma, t) == 1)])
-
-
-def _rest_height() -> bool:
-    """Whether x - c = v u + kappa u^2 Z(sigma, u), v being the launch velocity."""
-    return same(model.height(u), model.launch_velocity() * u + kappa * u**2 * model.zero_set().subs(t, u))
 
 
 def chatter_check(stated: Any) -> Check:
