@@ -68,7 +68,7 @@ def plot(thing: Any, ax: Any = None, *, height: str = "v", **style: object) -> A
         from matplotlib.collections import Collection
         from matplotlib.lines import Line2D
 
-        after = [child for each in np.ravel(axes) for child in each.get_children() if child not in before]
+        after = [child for panel in np.ravel(axes) for child in panel.get_children() if child not in before]
         _styled([child for child in after if isinstance(child, Line2D | Collection)], style)
     return axes
 

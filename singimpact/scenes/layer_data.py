@@ -110,17 +110,17 @@ def _stored(line: NamedLine) -> Curve:
 
 def _of_surface(name: str) -> Callable[[Results], list[Curve]]:
     def compute(results: Results) -> list[Curve]:
-        known: dict[str, list[Any]] = {
+        shared: dict[str, list[Any]] = {
             "lines": [
                 NamedLine(curve.points[:, :2], curve.points[:, 2], curve.closed, curve.tolerance, curve.marks)
                 for curve in results.get("lines")
             ]
         }
         if "visible" in results.found:
-            known["horizon"] = results.found["visible"]
-        results.surface.take(**known)
-        found: list[Curve] = getattr(results.surface, name)
-        return found
+            shared["horizon"] = results.found["visible"]
+        results.surface.take(**shared)
+        curves: list[Curve] = getattr(results.surface, name)
+        return curves
 
     return compute
 
