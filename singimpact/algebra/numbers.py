@@ -35,12 +35,12 @@ def exact(name: str, value: Any) -> Fraction:
     """
     if isinstance(value, bool | np.bool_):
         raise refuse(name, value, ACCEPTED)
-    if isinstance(value, int | float | Fraction | Decimal | np.integer | np.floating):
+    if isinstance(value, int | float | Fraction | np.integer | np.floating):
         try:
             if isinstance(value, float | np.floating):
                 return Fraction(float(value))
             # a Fraction of a numpy integer keeps numpy integers inside, and they overflow
-            return Fraction(value if isinstance(value, Fraction | Decimal) else int(value))
+            return value if isinstance(value, Fraction) else Fraction(int(value))
         except (ValueError, OverflowError):
             raise refuse(name, value, ACCEPTED) from None
     if hasattr(value, "_mpf_"):
@@ -58,8 +58,8 @@ def tree_of(value: Any, names: Iterable[str] = (), what: str = "expression") -> 
     >>> tree_of(0.5) == tree_of("1/2")
     True
     """
-    if isinstance(value, str):
-        return parse(value, names, what)
+    if isinstance(value, str | Decimal):
+        return parse(str(value), names, what)
     if isinstance(value, Expression):
         return value
     if str(type(value).__module__).partition(".")[0] == "sympy" and hasattr(value, "args"):
@@ -68,7 +68,7 @@ def tree_of(value: Any, names: Iterable[str] = (), what: str = "expression") -> 
         from singimpact.algebra.traced import traced
 
         return traced(value, tuple(names), what)
-    if names and not isinstance(value, int | float | Fraction | Decimal | np.number) and not hasattr(value, "_mpf_"):
+    if names and not isinstance(value, int | float | Fraction | np.number) and not hasattr(value, "_mpf_"):
         raise refuse(what, value, f"an expression in {', '.join(names)}: text, a function, a sympy object or a number")
     return Number(exact(what, value))
 

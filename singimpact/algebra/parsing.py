@@ -10,6 +10,7 @@ import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import islice
 from typing import Any
 
 from singimpact.algebra.expressions import (
@@ -40,6 +41,7 @@ class Limits:
 
     Parameters
     ----------
+    parts : of the argument of a function that is written out, in which it stands several times.
     zeros : evaluations of a part of a function while its one root is told from others; 0.2 s measured.
     roots : in a text.
     """
@@ -48,6 +50,7 @@ class Limits:
     depth: int = 60
     digits: int = 4_000
     exponent: int = 1_000
+    parts: int = 500
     zeros: int = 8_000
     roots: int = 20
 
@@ -135,7 +138,13 @@ def defined(name: str) -> Callable[[Expression], Expression] | None:
     if name not in DEFINITIONS:
         return None
     definition = parse(DEFINITIONS[name], ("w",))
-    return lambda argument: substitute(definition, {"w": argument})
+
+    def written_out(argument: Expression) -> Expression:
+        if sum(1 for _ in islice(walk(argument), LIMITS.parts)) == LIMITS.parts:
+            raise InputError(f"the argument of {name} has {LIMITS.parts} parts or more")
+        return substitute(definition, {"w": argument})
+
+    return written_out
 
 
 def refused_function(name: str) -> str:
@@ -304,7 +313,10 @@ class _Parser:
             argument = self.sum()
             if not self.take(")"):
                 raise self.refusal(f"{token} takes one argument" if self.token == "," else "a bracket is not closed")
-            return function(argument)
+            try:
+                return function(argument)
+            except InputError as error:
+                raise self.refusal(str(error)) from None
         if self.token == "." and token in ("np", "numpy", "math", "sympy", "sp", "cmath"):
             raise self.refusal(f"write the names of functions and numbers without {token}., as in cos(2*t)")
         if token in self.names:

@@ -11,14 +11,13 @@ import math
 import traceback
 import types
 from collections.abc import Callable, Sequence
-from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.expressions import MINUS_ONE, Call, Expression, Name, Number, add, multiply, negate, subtract
-from singimpact.algebra.parsing import bounded_power, defined, refused_function
-from singimpact.inputs import InputError, refuse
+from singimpact.algebra.expressions import FUNCTIONS, MINUS_ONE, Call, Expression, Name, add, multiply, negate, subtract
+from singimpact.algebra.parsing import LIMITS, bounded_power, defined, parse, refused_function
+from singimpact.inputs import InputError
 
 OF_ONE: dict[str, Callable[[Expression], Expression]] = {
     "neg": negate,
@@ -37,10 +36,17 @@ DECIDING = ("bool", "float", "int", "index", "complex", "lt", "le", "gt", "ge", 
 
 
 class Letter:
-    """A number of which only the tree is known; `OF_ONE` and `OF_TWO` have its operations."""
+    """A number of which only the tree is known, and how many parts it has; `OF_ONE`, `OF_TWO` are its operations."""
 
-    def __init__(self, tree: Expression) -> None:
-        self.tree = tree
+    def __init__(self, tree: Expression, parts: int = 1) -> None:
+        self.tree, self.parts = tree, parts
+        if parts > LIMITS.characters:
+            raise InputError(f"its formula has more than {LIMITS.characters} parts")
+
+    def with_number(self, value: object, build: Callable[[Expression, Expression], Expression]) -> Letter:
+        """A number built of this one and another."""
+        other = _letter(value)
+        return Letter(build(self.tree, other.tree), self.parts + other.parts + 1)
 
     def __getattr__(self, name: str) -> Callable[[], Letter]:
         """A function of the number, under the name by which numpy asks for it."""
@@ -49,7 +55,7 @@ class Letter:
         function = defined(name)
         if function is None:
             raise InputError(refused_function(name))
-        return lambda: Letter(function(self.tree))
+        return lambda: Letter(function(self.tree), (1 if name in FUNCTIONS else 4) * self.parts + 5)
 
     def decided(self, *_: object) -> object:
         """Refuse what needs a value."""
@@ -57,41 +63,44 @@ class Letter:
 
 
 for _name, _one in OF_ONE.items():
-    setattr(Letter, f"__{_name}__", lambda self, build=_one: Letter(build(self.tree)))
+    setattr(Letter, f"__{_name}__", lambda self, build=_one: Letter(build(self.tree), self.parts + 1))
 for _name, _two in OF_TWO.items():
-    setattr(Letter, f"__{_name}__", lambda self, other, build=_two: Letter(build(self.tree, _tree(other))))
-    setattr(Letter, f"__r{_name}__", lambda self, other, build=_two: Letter(build(_tree(other), self.tree)))
+    setattr(Letter, f"__{_name}__", lambda self, other, build=_two: self.with_number(other, build))
+    setattr(Letter, _name, getattr(Letter, f"__{_name}__"))  # math.pow asks for pow
+    setattr(Letter, f"__r{_name}__", lambda self, other, build=_two: _letter(other).with_number(self, build))
 for _name in DECIDING:
     setattr(Letter, f"__{_name}__", Letter.decided)
 
 
-def _tree(value: object) -> Expression:
-    """The tree of a number in a function; a float is the shortest decimal that rounds to it, as it is written there."""
+def _letter(value: object) -> Letter:
+    """A number in a function; a float is the shortest decimal that rounds to it, as it is written there."""
     plain = value.item() if isinstance(value, np.generic | np.ndarray) and not value.shape else value
-    if isinstance(plain, Letter):
-        return plain.tree
-    try:
-        return Number(Fraction(repr(plain)))
-    except ValueError:
-        raise InputError(f"{plain!r} is no number") from None
+    return plain if isinstance(plain, Letter) else Letter(parse(str(plain), (), "a number in it"))
 
 
 def _of_letters(function: Any) -> Callable[..., Any]:
     """A function of `math` that takes letters too."""
-
-    def called(first: Any, *others: Any) -> Any:
-        if not isinstance(first, Letter):
-            return function(first, *others)
-        return first ** others[0] if function is math.pow else getattr(first, function.__name__)(*others)
-
-    return called
+    return lambda first, *others: (
+        getattr(first, function.__name__)(*others) if isinstance(first, Letter) else function(first, *others)
+    )
 
 
-def _read(part: object) -> object:
-    """A global of a function, where `math` and its functions take letters."""
+def _read(part: Any) -> Any:
+    """A function, or what one reads, where `math` and its functions take letters."""
     if part is math:
         return types.SimpleNamespace(**{name: _read(value) for name, value in vars(math).items()})
+    if isinstance(part, types.FunctionType):
+        return lambda *values, **named: _copied(part)(*values, **named)
     return _of_letters(part) if isinstance(part, types.BuiltinFunctionType) and part.__module__ == "math" else part
+
+
+def _copied(function: types.FunctionType) -> types.FunctionType:
+    """A function that reads all its names by `_read`."""
+    names = {name: _read(part) for name, part in function.__globals__.items()}
+    cells = tuple(types.CellType(_read(cell.cell_contents)) for cell in function.__closure__ or ())
+    copied = types.FunctionType(function.__code__, names, function.__name__, function.__defaults__, cells)
+    copied.__kwdefaults__ = function.__kwdefaults__
+    return copied
 
 
 def traced(function: Callable[..., Any], names: Sequence[str], what: str) -> Expression:
@@ -114,31 +123,15 @@ def traced(function: Callable[..., Any], names: Sequence[str], what: str) -> Exp
     try:
         accepted = inspect.signature(function).parameters.values()
         takes = [item for item in accepted if item.default is item.empty or item.name in names]
-    except ValueError:  # of numpy's functions
-        takes = [inspect.Parameter(names[0], inspect.Parameter.POSITIONAL_ONLY)]
-    if len(takes) > len(names) or any(item.kind in (item.VAR_POSITIONAL, item.VAR_KEYWORD) for item in takes):
-        raise refuse(what, function, f"a function of {', '.join(names)}, or of some of them")
-    letters = [Letter(Name(item.name if item.name in names else names[at])) for at, item in enumerate(takes)]
-    try:
-        return _tree(_with_letters(function)(*letters))
+        if len(takes) > len(names) or any(item.kind in (item.VAR_POSITIONAL, item.VAR_KEYWORD) for item in takes):
+            raise InputError(f"give a function of {', '.join(names)}, or of some of them")
+        letters = [Letter(Name(item.name if item.name in names else names[at])) for at, item in enumerate(takes)]
+        text = str(_letter(_read(function)(*letters)).tree)
     except Exception as error:
         causes = error, error.__cause__, error.__context__
         reason = next((cause for cause in causes if isinstance(cause, InputError)), error)
-        raise InputError(f"{what} is not accepted: {_line(error, function)}{reason}") from None
-
-
-def _with_letters(function: Any) -> Any:
-    """The function where what it reads of `math` takes letters."""
-    if not isinstance(function, types.FunctionType):
-        return function
-    names = {name: _read(part) for name, part in function.__globals__.items()}
-    made = types.FunctionType(function.__code__, names, function.__name__, function.__defaults__, function.__closure__)
-    made.__kwdefaults__ = function.__kwdefaults__
-    return made
-
-
-def _line(error: BaseException, function: object) -> str:
-    """The last line of the function's file on the way to an error."""
-    file = getattr(getattr(function, "__code__", None), "co_filename", None)
-    lines = [frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename == file]
-    return f"line {lines[-1].lineno}, {lines[-1].line}: " if lines else ""
+        file = getattr(getattr(function, "__code__", None), "co_filename", None)
+        lines = [frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename == file]
+        line = f"line {lines[-1].lineno}, {lines[-1].line}: " if lines else ""
+        raise InputError(f"{what} is not accepted: {line}{reason}") from None
+    return parse(text, names, what)

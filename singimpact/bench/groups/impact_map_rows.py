@@ -113,7 +113,10 @@ def _map(calls: Calls, sizes: Sizes) -> Case:
             Method(
                 "singimpact, impact_map",
                 f"tolerance {tolerance:.0e}",
-                partial(_coarse, tolerance),
+                partial(
+                    lambda error, states: states.osc.impact_map(states.tau, states.v, tolerance=error).flight_time,
+                    tolerance,
+                ),
                 problems=count,
                 draw=draw(count),
             )
@@ -147,10 +150,6 @@ def _arrays(split: int, given: Any) -> Any:  # noqa: ARG001
     osc, calls = given
     found = [osc.impact_map(tau, v).flight_time for tau, v in calls]
     return found[0] if len(found) == 1 else np.concatenate(found)
-
-
-def _coarse(tolerance: float, states: States) -> Any:
-    return states.osc.impact_map(states.tau, states.v, tolerance=tolerance).flight_time
 
 
 def _beside(

@@ -1,6 +1,8 @@
 """Models of Python functions: the tree, its values against the function itself, and what has no tree."""
 
 import math
+from decimal import Decimal
+from fractions import Fraction
 from math import atan, cos as cosine
 
 import numpy as np
@@ -12,6 +14,20 @@ from singimpact.algebra import DEFINITIONS, DOUBLES, evaluate, parse
 from singimpact.inputs import InputError
 
 RATE = 1.7
+
+
+def helped(x):
+    """A function that the functions of the test call."""
+    return x * Fraction(1, 3) + 0 * math.sin(x)
+
+
+def grown(x):
+    """A formula that doubles sixty times."""
+    for _ in range(60):
+        x = x + x * x
+    return x
+
+
 SAME = {
     "x + 0.1*xdot + 0.3*x**3": lambda x, xdot: x + 0.1 * xdot + 0.3 * x**3,
     "sin(x) + tanh(5*xdot)/5": lambda x, xdot: np.sin(x) + np.tanh(5 * xdot) / 5,
@@ -20,6 +36,7 @@ SAME = {
     "(x - 1)/(2 + x**2) + abs(xdot)": lambda x, xdot: (x - 1) / (2 + math.pow(x, 2)) + abs(xdot),
     "x + b*xdot": lambda x, xdot, b: x + b * xdot,
     "x": lambda x: +x,
+    "x/3 + cos(xdot)": lambda x, xdot: helped(x) + cosine(xdot),
     "-2": lambda x, xdot: -2,
     "sinh(x) + log1p(xdot**2)": lambda x, xdot: math.sinh(x) + np.log1p(xdot**2),
 }
@@ -72,12 +89,15 @@ def test_a_defined_function_is_that_of_numpy(name):
         (lambda x, xdot: max(x, 0), "needs the value"),
         (lambda x, xdot: float(x), "needs the value"),
         (lambda x, xdot: x.gamma(), "unknown function 'gamma'"),
-        (lambda x, xdot: [x, xdot], "no number"),
-        (lambda x, xdot: None, "None is no number"),
+        (lambda x, xdot: [x, xdot], "has no meaning here"),
+        (lambda x, xdot: None, "the symbol 'None' has no value"),
         (lambda x, xdot: x / 0, "divides by zero"),
         (lambda x, xdot: x + missing, "missing"),  # noqa: F821
         (lambda x, xdot, other: x, "a function of x, xdot, or of some of them"),
         (lambda *x: x[0], "a function of x, xdot"),
+        (lambda x, xdot: grown(x), "formula has more than 10000 parts"),
+        (lambda x, xdot: x + float("inf"), "inf"),
+        (max, "signature"),
     ],
 )
 def test_what_has_no_tree_is_refused_with_its_line(function, why):
@@ -85,6 +105,28 @@ def test_what_has_no_tree_is_refused_with_its_line(function, why):
         si.ImpactOscillator(function, "cos(t)", 0, "1/2")
     assert "\n" not in str(refusal.value)
     assert str(refusal.value).startswith("f ")
+
+
+def test_functions_of_numpy_and_math_themselves():
+    for cosine_of in (np.cos, math.cos):
+        assert str(si.ImpactOscillator("x", cosine_of, 0, "1/2").g) == "cos(t)"
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("sinh(" * 30 + "x" + ")" * 30, "the argument of sinh has 500 parts or more"),
+        ("x + Decimal(1)", "unknown function 'Decimal'"),
+    ],
+)
+def test_what_grows_when_it_is_written_out_is_refused_at_once(text, why):
+    with pytest.raises(InputError, match=why):
+        si.ImpactOscillator(text, "0", 0, "1/2")
+
+
+def test_a_long_decimal_is_refused_at_once():
+    with pytest.raises(InputError, match="4000 digits"):
+        si.ImpactOscillator("x", "0", Decimal("1e1000000000"), "1/2")
 
 
 def test_the_function_stays_as_it_is():
