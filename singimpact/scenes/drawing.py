@@ -62,15 +62,20 @@ def plot(thing: Any, ax: Any = None, *, height: str = "v", **style: object) -> A
     if "axes" in style:
         warnings.warn("plot(axes=...) is plot(ax=...) now", FutureWarning, stacklevel=3)
         ax = style.pop("axes")
-    before = [] if ax is None else ax.get_children()
+    before = [] if ax is None else _children(ax)
     axes = _drawn(thing, ax, height)
     if style:
         from matplotlib.collections import Collection
         from matplotlib.lines import Line2D
 
-        after = [child for panel in np.ravel(axes) for child in panel.get_children() if child not in before]
-        _styled([child for child in after if isinstance(child, Line2D | Collection)], style)
+        drawn = [child for child in _children(axes) if child not in before]
+        _styled([child for child in drawn if isinstance(child, Line2D | Collection)], style)
     return axes
+
+
+def _children(axes: Any) -> list[Any]:
+    """What stands on axes, or on several."""
+    return [child for panel in np.ravel(axes) for child in panel.get_children()]
 
 
 def _styled(artists: Sequence[Any], style: dict[str, object]) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 import singimpact as si
 from singimpact.branches import OrbitTransitions
@@ -156,6 +157,8 @@ def test_both_sides_of_a_transition(waves: OrbitTransitions) -> None:
     assert [one.get_title() for one in axes] == ["h = -1.35", "h = -1.25"]
     labels = [text.get_text() for text in axes[0].get_legend().get_texts()]
     assert labels[-3:] == [PENS[name].words for name in ("P", "jump", "gamma")]
+    again = si.plot(both, Figure().subplots(1, 2), alpha=0.5)
+    assert {line.get_alpha() for one in again for line in one.lines} == {0.5}
     usual = waves.both_sides(index, size=4)
     assert float(usual.models[1].parameters["h"].value) == pytest.approx(-1.275)  # a twentieth of the interval
 
