@@ -3,8 +3,6 @@
 A cache is a convenience: when it cannot be read or written, one line says so and the work goes on without it.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import os

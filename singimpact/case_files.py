@@ -6,8 +6,6 @@ that are there (`case_journal`).
 Not here: the key of a function and of its cases (`case_keys`), files in general (`store`).
 """
 
-from __future__ import annotations
-
 import os
 import zipfile
 from dataclasses import dataclass

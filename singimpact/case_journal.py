@@ -4,8 +4,6 @@ Each record is appended with its length and checksum.  One that a killed process
 next process that reads the journal.
 """
 
-from __future__ import annotations
-
 import os
 import zlib
 from collections.abc import Iterator

@@ -10,8 +10,6 @@ Not here: which names a code has (`case_names`), reading and writing results (`c
 the state of random generators are not part of the key.
 """
 
-from __future__ import annotations
-
 import copyreg
 import functools
 import hashlib

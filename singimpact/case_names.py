@@ -3,8 +3,6 @@
 Not here: the key of what is named (`case_keys`).
 """
 
-from __future__ import annotations
-
 import builtins
 import decimal
 import dis

@@ -3,8 +3,6 @@
 A room's own files import one another by file; whoever stands outside (the public names, the tests) asks the room.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from importlib import import_module
 from typing import Any

@@ -1,7 +1,5 @@
 """One-line refusals: every bad input ends in a sentence that names it, its value and what would be accepted."""
 
-from __future__ import annotations
-
 import difflib
 import math
 import os

@@ -1,7 +1,5 @@
 """Results in a notebook: tables as HTML, and a line of progress that is rewritten in its cell."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Iterable, Sequence
 from html import escape

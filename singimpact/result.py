@@ -1,7 +1,5 @@
 """Ways out of a result: a line of words; names and values, from which JSON, tables, arrays and frames are made."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields, is_dataclass

@@ -1,7 +1,5 @@
 """Outcomes of a numerical question, as data: a failure is a status with a cause and a next step, never an exception."""
 
-from __future__ import annotations
-
 from enum import IntEnum
 from typing import Any
 

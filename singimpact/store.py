@@ -1,7 +1,5 @@
 """Output files and folders, and locks on files. Output files appear only when complete."""
 
-from __future__ import annotations
-
 import os
 import stat
 import sys

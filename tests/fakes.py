@@ -31,6 +31,10 @@ class FakeVerdict:
     evidence: str = "difference is the zero polynomial"
     rests_on: tuple = ()
     seconds: float = 0.125
+    certificates: tuple = ()
+    trials: tuple = ()
+    effective_modulo: tuple = ()
+    title: str = "a statement"
 
     @property
     def worth(self):

@@ -5,8 +5,6 @@ the collection that the caller has opened (`gathering.collected`), beside the ve
 series, substitutions and motions are made in `derivations`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction

@@ -1,7 +1,5 @@
 """`Certified`: a real number with a radius within which the true value lies, made from a ball."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from fractions import Fraction
 from types import SimpleNamespace

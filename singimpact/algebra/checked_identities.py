@@ -3,8 +3,6 @@
 Where a relation is given, of degree 2 in the last variable, the identity holds at both its roots.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple

@@ -5,8 +5,6 @@ this file but the layout of the data; the sentence that goes with one is made fr
 is refused.  Signs, roots and values are checked here, identities and motions in `checked_identities`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from fractions import Fraction
 from itertools import pairwise

@@ -4,8 +4,6 @@ They join the open collection.  Each function does nothing while none is open, a
 was derived.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from types import MappingProxyType

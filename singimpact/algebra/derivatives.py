@@ -1,7 +1,5 @@
 """The derivative of an expression tree by one of its names."""
 
-from __future__ import annotations
-
 from singimpact.algebra.expressions import (
     MINUS_ONE,
     ONE,

@@ -3,8 +3,6 @@
 Nothing here makes a certificate (`certificates`, `derivations`) or checks one by itself (`checking`).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Hashable, Iterable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar

@@ -4,8 +4,6 @@ A polynomial written out in its jets costs hundreds of times more; here a model'
 Where the polynomial nearly vanishes its terms cancel: then two doubles a number keep what one would lose.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any

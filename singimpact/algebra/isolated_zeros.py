@@ -7,8 +7,6 @@ moves all of it out.  A zero exists and is alone where that operator takes a box
 neither, down to the least size, are handed on as undecided.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction

@@ -4,8 +4,6 @@ A float means its exact binary value; a string, int, Fraction or sympy Rational 
 a constant expression tree, so ``pi/2.8`` and ``sqrt(2)`` are numbers too.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from decimal import Decimal

@@ -4,8 +4,6 @@ Nothing here evaluates text as code.  What is refused is refused before it can c
 text, its depth, and the size of a constant power are bounded (`Limits`).
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass

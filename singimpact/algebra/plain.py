@@ -1,7 +1,5 @@
 """Polynomials in many variables as plain dictionaries, exponents -> Fraction: what proofs are checked with."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any

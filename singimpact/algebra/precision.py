@@ -9,8 +9,6 @@ changed.
 - Nothing waits for another thread under the lock, and no generator yields under it.
 """
 
-from __future__ import annotations
-
 import functools
 import os
 from collections.abc import Callable, Iterator

@@ -3,8 +3,6 @@
 Coefficients are constant trees, so pi and sqrt(2) may occur in them; their signs are decided by balls.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache

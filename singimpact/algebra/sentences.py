@@ -1,7 +1,5 @@
 """Sentences of certificates, made from their data alone: a reader sees what was checked."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Taylor coefficients of the elementary functions at a point, over any ring, by their differential equations."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from typing import Any
 

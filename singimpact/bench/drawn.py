@@ -5,8 +5,6 @@ x'' + x = cos 2.8t and x'' + x'/10 + x + 3x^3/10 = cos 1.7t over the wall at 0.3
 same ones.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import lru_cache

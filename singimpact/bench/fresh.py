@@ -3,8 +3,6 @@
 Threads of numpy's linear algebra, which nothing here uses, are not started: see `NO_SPINNING`.
 """
 
-from __future__ import annotations
-
 import atexit
 import json
 import os

@@ -5,8 +5,6 @@ not counted, compiles.
 Ratios are taken within a round, for the rounds of a busy machine differ more than the methods of one round.
 """
 
-from __future__ import annotations
-
 import sys
 import time
 from collections.abc import Callable, Sequence

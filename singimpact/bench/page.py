@@ -3,8 +3,6 @@
 The first line of a page has a digest of the sources that it was measured with.
 """
 
-from __future__ import annotations
-
 import hashlib
 import re
 from collections.abc import Mapping, Sequence

@@ -1,7 +1,5 @@
 """The reference cases: states with their true impacts, tagged by what makes them hard, and named values."""
 
-from __future__ import annotations
-
 import csv
 from dataclasses import dataclass
 from functools import lru_cache

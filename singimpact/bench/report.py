@@ -1,7 +1,5 @@
 """Measurements as tables, plain data and plots, with the exponents of power laws through measured times."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from math import sqrt

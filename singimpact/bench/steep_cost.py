@@ -1,7 +1,5 @@
 """CPU time of `first_hit` on arrays of states, a figure a family, paired with the usual rule for Taylor steps."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Random states enclosed twice: 20 digits against 40, which choose another degree, other steps and other precision."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass

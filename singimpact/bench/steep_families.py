@@ -5,8 +5,6 @@ text. Its layers say where the acceleration varies on a length of about 1/K; `tr
 them. The smooth families measure cost; they have no layer.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass

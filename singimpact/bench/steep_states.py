@@ -3,8 +3,6 @@
 A case is a model and some states; it is drawn from its number and the seed alone, so cases run anywhere, in any order.
 """
 
-from __future__ import annotations
-
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from functools import lru_cache, partial

@@ -7,8 +7,6 @@ flights are above the wall until they meet it is shown apart, by `first_hits`. `
 boxes, for orbits that need not close.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple

@@ -4,8 +4,6 @@ On one side of it, in a number of the model, the chatter of the released orbit c
 the orbit passes the zero after finitely many impacts.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from fractions import Fraction

@@ -7,8 +7,6 @@ x'' = a_c < 0 where x' = 0 at the wall; so each fate of (2) belongs to an open s
 lies a value with neither: its impacts are infinitely many and accumulate at the zero.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction

@@ -1,7 +1,5 @@
 """A branch of periodic orbits over a parameter, through its grazes, with its events."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any

@@ -5,8 +5,6 @@ as (2n, 2k) orbits whose halves are equal. Other branches cross at a slope over 
 (pitchfork); the second branch is reached by one step across the first.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -3,8 +3,6 @@
 Points are stored in the user's cache, so that an interrupted branch continues where it was.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass

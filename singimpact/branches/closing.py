@@ -7,8 +7,6 @@ root.  A solution with some v_i < 0, or with a flight that is below the wall som
 An orbit without impact has conditions of its own, `FreeClosing`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import sqrt

@@ -1,7 +1,5 @@
 """Pseudo-arclength continuation: a predictor along the tangent, then Newton's method across it (Keller 1977)."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Any, Protocol

@@ -3,8 +3,6 @@
 Points are (tau, v), shape (m, 2); sides are the period and the unit of v.  Lengths are in these units.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any

@@ -5,8 +5,6 @@ flight is below the wall on its way, or misses its own state at the end. With tw
 flight may meet the wall is tried; the orbit is looked for from the faster of its two impacts.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction

@@ -9,8 +9,6 @@ manifolds. D F is regular there: W^u and W^s cross transversally. The ends of th
 until the width of the wedges, contracted by the flights in between, is below the digits asked for.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction

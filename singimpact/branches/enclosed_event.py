@@ -14,8 +14,6 @@ the number along it, from first and second derivatives of all flights over the b
 number vanishes once, and the event is the only one.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from fractions import Fraction
 from math import ceil

@@ -1,7 +1,5 @@
 """Curves of folds, doublings and grazes in two parameters."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial

@@ -15,8 +15,6 @@ pieces of one curve. Two sequences part at the first loop that differs, one in N
 the entropy of G is at least ln x, where x^-n + x^-(n + k - j) = 1. No theorem about homoclinic points is used.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product, takewhile

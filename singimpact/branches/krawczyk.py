@@ -8,8 +8,6 @@ there is one zero of F in X and no other. Where one unknown is held, at any valu
 term D F(X) e (-d ... d), e that unknown, and there is one zero for each of its values: a curve, which has no end in X.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction

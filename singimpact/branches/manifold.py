@@ -1,7 +1,5 @@
 """W^s and W^u of a periodic saddle in the plane (tau, v) of states after impacts, cut at discontinuities of the map."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from itertools import pairwise

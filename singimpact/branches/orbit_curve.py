@@ -1,7 +1,5 @@
 """A curve of periodic orbits, followed in both directions over one number of a model or two."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass

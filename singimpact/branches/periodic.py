@@ -5,8 +5,6 @@ from many starts, grazes among them; for two impacts of a linear model balls sho
 missed. Orbits with digits= are these, refined in balls.
 """
 
-from __future__ import annotations
-
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction

@@ -4,8 +4,6 @@ What it does is told by the first later zero of that kind before which its chatt
 the number, grazes included, so this changes only where the orbit runs along gamma into such a zero.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

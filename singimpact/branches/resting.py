@@ -1,7 +1,5 @@
 """Periodic orbits without impacts, and those that chatter to rest and lift off again."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

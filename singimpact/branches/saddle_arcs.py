@@ -7,8 +7,6 @@ The expansion holds for |s| of 1e-5. Its images at Chebyshev nodes give a polyno
 a curve that is grown from there is stretched less, and rounding in s with it.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

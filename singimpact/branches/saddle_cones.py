@@ -18,8 +18,6 @@ cone |xi| <= L_s |eta|, and with |m22| + L_s |m21| < 1 they converge to p: they 
 graphs are pieces of smooth manifolds, so |w'| <= L holds at every point.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property

@@ -1,7 +1,5 @@
 """The periodic orbit on which an orbit settles, with its multipliers: its impacts may be as weak as doubles allow."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

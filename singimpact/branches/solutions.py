@@ -1,7 +1,5 @@
 """The orbit at a point that solves closing conditions, and the conditions that an orbit solves."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial

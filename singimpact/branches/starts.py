@@ -16,8 +16,6 @@ launch phase,
 a trigonometric polynomial in tau, whose roots are eigenvalues.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, NamedTuple

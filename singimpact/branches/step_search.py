@@ -5,8 +5,6 @@ them comes near 0 without a change of sign is divided where that cubic has its e
 change of sign of a function or none.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """`certify` and `read_certificate`: a certified result as a file that the second program accepts."""
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys

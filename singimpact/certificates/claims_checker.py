@@ -17,8 +17,6 @@ a reader to judge, by their sentences.
 The kinds of certificates, and what shows each, are in `claims_proofs` beside it.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import re

@@ -13,8 +13,6 @@ A polynomial is a list of [exponents, coefficient], a coefficient a whole number
     flight     t y(z; sigma, t) solves it between two touches of the wall, at z = 0 and z = 1
 """
 
-from __future__ import annotations
-
 import re
 import time
 from collections.abc import Iterator, Sequence

@@ -1,7 +1,5 @@
 """`singimpact basins`: the attractor of each state of a grid."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import click

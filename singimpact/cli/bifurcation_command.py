@@ -1,7 +1,5 @@
 """`singimpact bifurcation`: settled orbits for many values of a parameter."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import click

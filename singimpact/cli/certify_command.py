@@ -1,7 +1,5 @@
 """`singimpact certify`: results with their certificates, and certificates that are checked."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import click

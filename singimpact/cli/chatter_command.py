@@ -1,7 +1,5 @@
 """`singimpact chatter`: the time at which infinitely many impacts accumulate."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import click

@@ -1,7 +1,5 @@
 """`singimpact cite`: references to cite."""
 
-from __future__ import annotations
-
 import click
 
 from singimpact import __version__

@@ -1,7 +1,5 @@
 """`singimpact claims`: the list of claims, one claim, the graph of their dependences, the claims that need one."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import click

@@ -1,7 +1,5 @@
 """`singimpact errata`: misprints of the paper, their corrections, and the reasons."""
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """`singimpact figure`: the paper's figures from computed data, and those beyond it."""
 
-from __future__ import annotations
-
 from functools import partial
 from pathlib import Path
 from time import process_time

@@ -1,7 +1,5 @@
 """`singimpact fixed-points`: the fixed points of the blown-up maps and their multipliers."""
 
-from __future__ import annotations
-
 import click
 
 from singimpact.cli.output import as_json_text, columns, emit, output_options

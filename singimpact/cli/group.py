@@ -1,7 +1,5 @@
 """The group `singimpact`: its commands by name; every mistake of the caller gives one line on standard error."""
 
-from __future__ import annotations
-
 import re
 import signal
 import sys
@@ -43,6 +41,15 @@ COMMANDS = {
     "fixed-points": "fixed points and multipliers, certified, to any digits",
     "cite": "references to cite",
 }
+
+LINEAR = "--omega 2.8 --clearance 0.1 --restitution 0.8 --amplitude -1"
+DOOR = f"""\
+Motion of an oscillator that hits a wall: x'' + f(x, x') = g(t), x >= c, v -> -r v, with exact theory near grazes.
+  singimpact orbit {LINEAR} --tau 0.3 --v 0.4 -o orbit.png   draws an orbit
+  singimpact bifurcation {LINEAR} --from -0.1 --to 0.25 -o bifurcation.png   over the clearance
+  singimpact verify   checks every statement of the theory and lists the misprints of its paper
+Your own model: a file, --model FILE, with f = "x + 0.3*x**3", g = "cos(1.7*t)", clearance = 0.3, restitution = 0.6.
+All commands: singimpact --help; of one: singimpact orbit --help."""
 
 
 class Commands(click.Group):
@@ -124,4 +131,4 @@ def main(ctx: click.Context) -> None:
     Output files appear only when complete. A mistake in the input gives one line and exit code 2.
     """
     if ctx.invoked_subcommand is None:
-        click.echo(ctx.get_help())
+        click.echo(DOOR)

@@ -1,7 +1,5 @@
 """`singimpact lyapunov`: both Lyapunov exponents of an orbit."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import click

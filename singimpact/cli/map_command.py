@@ -1,7 +1,5 @@
 """`singimpact map`: from an impact to the next one."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import click

@@ -1,7 +1,5 @@
 """`singimpact orbit`: an orbit of many impacts, as numbers or as a picture."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The output of a command: text, tables, JSON or a picture; a file appears only when complete."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path

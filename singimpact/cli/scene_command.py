@@ -1,7 +1,5 @@
 """`singimpact scene`: the picture that a scene file describes."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

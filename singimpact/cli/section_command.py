@@ -1,7 +1,5 @@
 """`singimpact section`: the states of an orbit once in each period, as numbers or as a picture."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

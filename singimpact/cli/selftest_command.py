@@ -1,7 +1,5 @@
 """`singimpact selftest`: random states of your own model, compared with independent computations."""
 
-from __future__ import annotations
-
 import sys
 from typing import Any
 

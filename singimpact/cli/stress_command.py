@@ -1,7 +1,5 @@
 """`singimpact stress`: errors of public functions near singular points and parameters, against 60 digits."""
 
-from __future__ import annotations
-
 import sys
 
 import click

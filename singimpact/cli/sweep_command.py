@@ -1,7 +1,5 @@
 """`singimpact sweep`: the state after many impacts, for many values of one parameter."""
 
-from __future__ import annotations
-
 from functools import partial
 from typing import Any
 

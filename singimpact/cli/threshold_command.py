@@ -1,7 +1,5 @@
 """`singimpact threshold`: the velocity below which chatter completes."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import click

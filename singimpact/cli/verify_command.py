@@ -1,7 +1,5 @@
 """`singimpact verify`: every claim, its verdict, and the misprints."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import sys
@@ -9,6 +7,7 @@ from typing import Any
 
 import click
 
+from singimpact.cli.group import LINEAR
 from singimpact.cli.output import as_json_text, emit, output_options
 from singimpact.progress import ProgressLine
 
@@ -21,10 +20,15 @@ COLOURS = {
     "error": "red",
 }
 
+MORE = f"""\
+All of it: singimpact verify --all, or -o verify.html with the formulas set.
+A picture of an oscillator: singimpact orbit {LINEAR} --tau 0.3 --v 0.4 -o orbit.png"""
+
 
 @click.command()
 @click.argument("ids", metavar="[ID]...", nargs=-1)
 @click.option("--beyond", is_flag=True, help="The claims that are not in the paper, and those they rest on.")
+@click.option("--all", "whole", is_flag=True, help="One line a claim, and of each misprint its witness.")
 @click.option("--certificates", metavar="DIR", help="Write one JSON file a claim, with what its proof rests on.")
 @output_options
 @click.pass_context
@@ -32,14 +36,16 @@ def command(
     ctx: click.Context,
     ids: tuple[str, ...],
     beyond: bool,
+    whole: bool,
     certificates: str | None,
     as_json: bool,
     output: str | None,
 ) -> None:
     """Derive, prove and cross-check every claim, or the named ones and those that they rest on.
 
-    Prints the misprints at the end. The exit code is 1 if a claim ends in `error`. The files of --certificates are
-    checked by a second program, singimpact/certificates/claims_checker.py.
+    Of all claims it prints the counts and the misprints on one screen; `-o verify.html` writes the whole list with its
+    formulas set, any other file the lines of --all. The exit code is 1 if a claim ends in `error`. The files of
+    --certificates are checked by a second program, singimpact/certificates/claims_checker.py.
     """
     from singimpact.paper.claims.verdicts import verify
 
@@ -52,7 +58,15 @@ def command(
         )
     if certificates is not None:
         verdicts.save_certificates(certificates)
-    emit(as_json_text(verdicts.as_dict()) if as_json else verdicts.text(_width(output), _painter(output)), output)
+    if as_json:
+        text = as_json_text(verdicts.as_dict())
+    elif output is not None and output.endswith((".html", ".htm")):
+        text = verdicts.html()
+    elif whole or ids or beyond or output is not None:
+        text = verdicts.text(_width(output), _painter(output))
+    else:
+        text = f"{verdicts.screen(_width(output))}\n\n{MORE}"
+    emit(text, output)
     ctx.exit(verdicts.exit_code)
 
 

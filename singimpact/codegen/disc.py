@@ -7,8 +7,6 @@ that may be singular on the disc has the radius inf, so no pole, branch point or
 is called.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from fractions import Fraction

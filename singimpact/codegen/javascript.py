@@ -4,8 +4,6 @@ Doubles of both languages follow one standard, so that sums and products agree b
 may differ in the last bit.  A construct that is not in the tables below is refused when the text is made.
 """
 
-from __future__ import annotations
-
 import ast
 import math
 from collections.abc import Collection, Iterator

@@ -5,8 +5,6 @@ one or two indices, named tuples of arrays, `if`, `while`, `for ... in range`, a
 variable is a whole number if all its values are, else a double.  A division by zero has the answer of doubles.
 """
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Text of functions over numbers of any kind: arrays become lists of lists, which are several times faster there."""
 
-from __future__ import annotations
-
 import ast
 from functools import lru_cache
 from types import CodeType

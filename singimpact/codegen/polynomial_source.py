@@ -4,8 +4,6 @@ The coefficient of each power is a polynomial in parameters over one whole denom
 text runs.  What it returns for numpy arrays, mpmath numbers, fractions and balls is the same formula.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field

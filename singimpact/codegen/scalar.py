@@ -1,7 +1,5 @@
 """An expression as the source of one function of one number, its constant parts as an argument."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from fractions import Fraction

@@ -5,8 +5,6 @@ Every constant part of f and g is an entry of the argument `p`: it is computed e
 and models that differ in parameter values share one text.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction

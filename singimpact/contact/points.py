@@ -1,7 +1,5 @@
 """Tangency points of a model and swan points of a family, with exact definitions: their numbers give any digits."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction

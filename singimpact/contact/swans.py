@@ -1,7 +1,5 @@
 """Swan points of a family as the clearance varies: tau_*, c_0 and the model at c_0, all with exact definitions."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from fractions import Fraction
 from math import floor

@@ -4,8 +4,6 @@ After a phase with a_c < 0 the next zero carries a gamma whatever its order: a_c
 a_j > 0) or touches zero from below (even order, a_j < 0).  What has to be decided is that it is a zero, and its order.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache

@@ -3,8 +3,6 @@
 Every function checks that the pieces it shows add up to the expression it was given.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import sympy

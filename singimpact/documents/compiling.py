@@ -1,7 +1,5 @@
 """LaTeX into PDF by latexmk, where it is installed."""
 
-from __future__ import annotations
-
 import os
 import re
 import shutil

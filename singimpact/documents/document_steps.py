@@ -1,7 +1,5 @@
 """Derivations: a section is a list of steps; a step is words, perhaps an equation, and the claims that it shows."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 

@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any
+from unicodedata import normalize
 
 from singimpact.documents.document_steps import Mark, Section, Step
 
@@ -144,10 +145,77 @@ def _width_of(token: str) -> float:
     return PAGE.sign if token in "+-=<>" or token in (r"\le", r"\ge", r"\ne", r"\to") else 1.0
 
 
+# Formulas as one line of Unicode, for a terminal.
+
+_SIGNS = r"""
+    \alpha α \beta β \gamma γ \delta δ \eta η \kappa κ \lambda λ \sigma σ \tau τ \phi φ \chi χ \psi ψ
+    \omega ω \pi π \ell ℓ \Lambda Λ \Pi Π \Sigma Σ \Phi Φ \partial ∂ \infty ∞ \pm ± - − \le ≤ \ge ≥ \ne ≠
+    \in ∈ \ni ∋ \subset ⊂ \setminus ∖ \cup ∪ \cap ∩ \circ ∘ \to → \mapsto ↦ \Rightarrow ⇒ \sim ~ \dots …
+    \cos cos \lim lim \times × \{ { \} } \# #"""
+_LEFT_OUT = (r"\,", r"\!", r"\;", r"\bigl", r"\bigr", r"\left", r"\right", "{", "}")
+_UNICODE = {
+    **dict(zip(_SIGNS.split()[::2], _SIGNS.split()[1::2], strict=True)),
+    **dict.fromkeys(_LEFT_OUT, ""),
+    **dict.fromkeys((r"\ ", r"\quad", r"\qquad"), " "),
+}
+_ACCENTS = {r"\dot": "\u0307", r"\ddot": "\u0308", r"\tilde": "\u0303", r"\bar": "\u0304"}
+_RAISED = str.maketrans("0123456789+−s", "⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻ˢ"), str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+_VULGAR = {"1/2": "½", "1/3": "⅓", "2/3": "⅔", "1/4": "¼", "3/4": "¾", "1/6": "⅙", "1/8": "⅛"}
+_RELATION = re.compile(r"\s*(:=|[=<>≤≥≠∈∋⊂∖∪∩∘→↦⇒~])\s*")
+
+
+def unicode_line(formula: str) -> str:
+    """A formula in LaTeX as one line of Unicode; a command that is not known stays as it is.
+
+    Examples
+    --------
+    >>> unicode_line(r"\\frac{\\partial v_c}{\\partial t}(z_*)=-\\tfrac12a_*^2,\\quad\\sqrt{m^{-1}}\\ne\\dot x")
+    '∂v_c/∂t(z_*) = −½a_*², √(m⁻¹) ≠ ẋ'
+    """
+    return " ".join(_RELATION.sub(r" \1 ", normalize("NFC", _in_unicode(formula))).split())
+
+
+def _in_unicode(formula: str) -> str:
+    """The signs of a formula, spaces not yet in order."""
+    line, at = "", 0
+    while at < len(formula):
+        token = str(next(_TOKEN.finditer(formula, at)).group())
+        at += len(token)
+        if _STACKED.fullmatch(token):
+            above, at = _argument(formula, at)
+            below, at = _argument(formula, at)
+            line += _fraction(_in_unicode(above), _in_unicode(below))
+        elif token in ("^", "_"):
+            script, at = _argument(formula, at)
+            line += _script(token, _in_unicode(script))
+        elif token in _ACCENTS or token in (r"\text", r"\mathcal", r"\mathbb", r"\sqrt"):
+            inner, at = _argument(formula, len(formula) - len(formula[at:].lstrip()))
+            line += f"√({_in_unicode(inner)})" if token == r"\sqrt" else _in_unicode(inner) + _ACCENTS.get(token, "")
+        else:
+            line += _UNICODE.get(token, token)
+    return line
+
+
+def _fraction(above: str, below: str) -> str:
+    """A quotient on one line; a number is in brackets where it could be read together with what follows."""
+    atoms = [part if re.fullmatch(r"∂?\s*\w+", part) else f"({part})" for part in (above, below)]
+    quotient = "/".join(atom.replace("∂ ", "∂") for atom in atoms)
+    return _VULGAR.get(quotient, f"({quotient})" if (above + below).isdigit() else quotient)
+
+
+def _script(sign: str, script: str) -> str:
+    """An index or an exponent, raised or lowered where Unicode has all of its signs."""
+    table = _RAISED[sign == "_"]
+    moved = script.translate(table)
+    if all(ord(letter) in table for letter in script) or not script.strip("′'"):
+        return moved
+    return f"{sign}{script}" if len(script) == 1 else f"{sign}({script})"
+
+
 if TYPE_CHECKING:
     from jinja2 import Environment
 
-PIECE, DOCUMENT, MARKDOWN = "section.tex", "document.tex", "section.md"
+PIECE, DOCUMENT, MARKDOWN, VERDICTS = "section.tex", "document.tex", "section.md", "verdicts.html"
 MASTER = "derivations"
 Marks = Mapping[str, Mark]
 
@@ -236,6 +304,18 @@ def as_markdown(section: Section, marks: Marks) -> str:
     return _filled(MARKDOWN, section=section, marks=marks)
 
 
+def as_page(summary: Sequence[str], verdicts: Sequence[Any]) -> str:
+    """Verdicts as an HTML page that needs no network: formulas are MathML."""
+    return _filled(VERDICTS, summary=summary, verdicts=verdicts)
+
+
+def mathml(formula: str) -> str:
+    """A formula in LaTeX as MathML, which browsers set."""
+    from latex2mathml.converter import convert
+
+    return str(convert(formula))
+
+
 def as_data(section: Section, marks: Marks) -> dict[str, Any]:
     """A section as data for JSON."""
     steps = [
@@ -320,6 +400,7 @@ _FILTERS: dict[str, Callable[..., Any]] = {
     "markdown": markdown_text,
     "markdown_words": markdown_words,
     "display": display,
+    "mathml": mathml,
     "notes": notes,
 }
 

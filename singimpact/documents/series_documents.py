@@ -1,7 +1,5 @@
 """The series of the theory to any order, for generic symbols or for a model, as data and in every format."""
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence

@@ -9,8 +9,6 @@ to a doubling a state comes nearer by turns of 2n impacts where n close the orbi
 neither.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

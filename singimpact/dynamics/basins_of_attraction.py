@@ -1,7 +1,5 @@
 """Basins: the attractor of each state of a grid: an (n, k) orbit, repeated chatter, rest, chaos."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from contextlib import nullcontext
 from dataclasses import dataclass

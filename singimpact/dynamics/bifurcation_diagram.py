@@ -1,7 +1,5 @@
 """Bifurcation diagrams: the last impacts of one long orbit for each value of a parameter."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from contextlib import nullcontext
 from dataclasses import dataclass, field

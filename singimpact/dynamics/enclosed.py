@@ -5,8 +5,6 @@ flight takes between 2v/A and 2v/a and returns between v/q and q v.  So the rest
 2v/(a (1 - r q)): its width is of second order in v, and half the digits asked for have to be flown.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction

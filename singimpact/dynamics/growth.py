@@ -4,8 +4,6 @@ The images of a fundamental piece follow one another without a gap.  A piece is 
 discontinuity between two neighbours in s the flight grazes, and the curve is split there by its hit history.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

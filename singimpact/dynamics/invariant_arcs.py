@@ -4,8 +4,6 @@ A fundamental piece lies where the series is accurate; its inverse images follow
 across the curve shrink.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A mass at rest on the obstacle: when the acceleration lifts it off."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from functools import lru_cache
 from typing import Any

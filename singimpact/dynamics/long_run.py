@@ -4,8 +4,6 @@ A mass at rest lifts off where a_c becomes positive: at one of finitely many pha
 completes is that of its lift-off, and chatter that comes again and again is a cycle of these phases.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

@@ -8,8 +8,6 @@ under a constant acceleration are summed exactly, power by power; the first chan
 are added from the adiabatic invariant v^3/|a_c| of the elastic ball.
 """
 
-from __future__ import annotations
-
 from fractions import Fraction
 from functools import lru_cache
 from math import factorial

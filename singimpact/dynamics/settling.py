@@ -5,8 +5,6 @@ Chaotic transients are long where impacts lose little: x'' + x = cos 3.3t with c
 the slowest plain chatter would be over is followed on, and compared with the attractors found meanwhile.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import ceil, log

@@ -1,7 +1,5 @@
 """The velocity of gamma at a phase: chatter completes below it, and is interrupted by lift-off above it."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import Enum, auto

@@ -4,8 +4,6 @@ A < B are the two zeros of a_c that the swan has opened into.  Between them a_c 
 negative one.  The letters are those of section 6.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property

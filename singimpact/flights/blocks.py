@@ -3,8 +3,6 @@
 What is computed one state at a time is put together by `gathered`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields as fields_of
 from typing import Any

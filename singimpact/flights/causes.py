@@ -1,7 +1,5 @@
 """Why a flight is not decided: the codes of the kernels as causes, and where the flight came to, in words."""
 
-from __future__ import annotations
-
 from math import log2
 from typing import Any
 

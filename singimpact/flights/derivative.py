@@ -7,8 +7,6 @@ The determinant is the product of Liouville's formula, to full relative accuracy
 A flight that contracts by e^(-70) leaves two equal columns of D G in doubles; this product knows its determinant.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import partial
 from math import isnan

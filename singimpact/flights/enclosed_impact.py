@@ -1,7 +1,5 @@
 """The impact map of a box: of states, and of numbers of the model, with D G; every number has a proved radius."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction

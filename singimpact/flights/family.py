@@ -8,8 +8,6 @@ gives the derivative by a parameter.  Any other model is flown in Taylor steps, 
 equation that the parameter drives.
 """
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace

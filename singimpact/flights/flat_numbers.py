@@ -1,7 +1,5 @@
 """The numbers of a model in the flat arrays that kernels read, and the rules of its flights."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

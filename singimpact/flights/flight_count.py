@@ -1,7 +1,5 @@
 """The number of flights of a piece of work, which a picture reports and tests hold."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar

@@ -1,7 +1,5 @@
 """x and x' along one flight: in Taylor steps, or from the closed form of a linear model."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 

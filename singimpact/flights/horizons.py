@@ -1,7 +1,5 @@
 """The flight time after which a flight is given up: given by the caller, or long beside the motion of the model."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any

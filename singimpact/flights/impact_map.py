@@ -4,8 +4,6 @@ A pair of floats takes the short way: one call of the compiled entry.  All else 
 few flights that end in no plain hit are decided one by one (`undecided`).
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from functools import partial
 from math import inf

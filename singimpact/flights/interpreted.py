@@ -3,8 +3,6 @@
 No table in double-double is filled here: a hit that is to be refined is left to balls.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Long calls of compiled code in other threads: Ctrl-C ends the wait for one at once, and two share out an array."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager

@@ -1,7 +1,5 @@
 """The inverse of the impact map: the flight that ended in an impact, run backwards."""
 
-from __future__ import annotations
-
 from functools import lru_cache, partial
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Limits and tolerances of the impact map, each with its reason."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 

@@ -1,7 +1,5 @@
 """The numbers of a model as doubles, and what the doubles leave out."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from fractions import Fraction
 from functools import lru_cache

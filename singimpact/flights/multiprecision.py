@@ -4,8 +4,6 @@ Two runs at different precision must agree to the digits asked for, else the pre
 square root at a graze, and no formula is trusted to know how near it is.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from fractions import Fraction
 from functools import lru_cache

@@ -4,8 +4,6 @@ No root of x - c is removed at such a start.  Taylor steps fly linear models too
 wall; a hit of theirs is placed by one Newton step of the closed form.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction

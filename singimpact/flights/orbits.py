@@ -1,7 +1,5 @@
 """Impacts in a row: of one orbit with every impact, and of many orbits with their last states."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any

@@ -1,7 +1,5 @@
 """The restitution law in numbers: rho, its slope, and the velocity before an impact from the one after it."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from functools import lru_cache
 from typing import Any

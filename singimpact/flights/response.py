@@ -6,8 +6,6 @@ with Y, Z the derivatives of x(T) by v and tau at fixed flight time: solutions o
 differences.
 """
 
-from __future__ import annotations
-
 from fractions import Fraction
 from typing import Any, NamedTuple
 

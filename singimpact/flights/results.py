@@ -1,7 +1,5 @@
 """Results of flights: frozen dataclasses of arrays, or of scalars when the state was scalar."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any, ClassVar, Self

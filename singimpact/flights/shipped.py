@@ -4,8 +4,6 @@ It is made by `python derivations/kernels.py` for the platforms below.  The inde
 kernels' sources and of each file: what was made from other sources, or is damaged, is never loaded.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import platform

@@ -5,8 +5,6 @@ It is found one power of u after another: what is still missing there is divided
 division is what A and B must take.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction

@@ -5,8 +5,6 @@ Formulas in the launch time, the time since, and the launch velocity:
     x - c = u(tau, t) + v B(t),     u = steady(tau + t) - c + the free motion that starts (x, x') at (c, 0)
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction

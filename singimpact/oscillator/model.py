@@ -1,7 +1,5 @@
 """`Oscillator`: f, g, clearance, restitution and parameters, kept exact; and model files."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Collection, Mapping
 from fractions import Fraction

@@ -1,7 +1,5 @@
 """Numbers of a model that can move, also those that the model does not name."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from singimpact.algebra.expressions import Name, add, multiply, names_in, number

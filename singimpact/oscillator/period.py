@@ -1,7 +1,5 @@
 """The period of a forcing g(t): found from its frequencies, or checked when it is given."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from math import gcd, lcm
 from typing import Any

@@ -1,7 +1,5 @@
 """The phase of a launch, reduced without loss: tau is an exact number, however large."""
 
-from __future__ import annotations
-
 import math
 from fractions import Fraction
 from functools import lru_cache

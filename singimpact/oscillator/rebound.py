@@ -1,7 +1,5 @@
 """The restitution v -> rho(v): a number r for rho = -r v, or an expression in the velocity v < 0 before the impact."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from functools import lru_cache
 from typing import Any

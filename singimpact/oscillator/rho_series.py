@@ -1,7 +1,5 @@
 """The Taylor coefficients of rho at rest over any ring; a rho that is not smooth there is refused by name."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from singimpact.algebra.expressions import evaluate

@@ -5,8 +5,6 @@
 With f = k x + d x' + m the terms of w go to g: y'' + f(y, y') = g - w'' - k w - d w'.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple

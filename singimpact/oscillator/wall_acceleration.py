@@ -4,8 +4,6 @@ A launch at rest next to a zero of a_c is a launch from that zero: no double is 
 next to a zero would fly or stick by the sign of a rounding.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction

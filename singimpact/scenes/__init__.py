@@ -4,8 +4,6 @@ Not here: what is drawn (`dynamics`, `surface`, `flights`), text with formulas (
 (`paper.figures`).
 """
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING
 
 from singimpact.handed_on import names_of

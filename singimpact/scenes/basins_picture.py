@@ -1,7 +1,5 @@
 """Pictures of basins, also before and after a transition of P; classes differ in lightness too."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

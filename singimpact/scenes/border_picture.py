@@ -1,7 +1,5 @@
 """The cascade beside a border orbit: impacts of the released orbit, and what attracts it, over the distance."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

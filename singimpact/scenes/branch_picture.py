@@ -1,7 +1,5 @@
 """Pictures of branches of periodic orbits, of their events in two numbers, and of bifurcation diagrams below them."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any

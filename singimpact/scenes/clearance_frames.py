@@ -1,7 +1,5 @@
 """The curves of the impact surface for many clearances on both sides of a swan: what the page with a slider shows."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction

@@ -1,7 +1,5 @@
 """One call for everything that can be drawn."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Callable, Sequence
 from typing import Any

@@ -6,8 +6,6 @@ kernels are those of `flights`, translated into JavaScript; every model is flown
 ones too.
 """
 
-from __future__ import annotations
-
 import inspect
 import json
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Places for the names of points, clear of curves and of one another."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise

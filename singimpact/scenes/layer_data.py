@@ -3,8 +3,6 @@
 The inputs of a need are needs too, so a further layer costs only what is new.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import cached_property

@@ -1,7 +1,5 @@
 """Pictures of W^s and W^u of saddles, of points where they cross, of certified crossings and of horseshoes."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """x(t) of an orbit: flights, impacts, rest on the obstacle, chatter that was summed up; and a sheet of three panels."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

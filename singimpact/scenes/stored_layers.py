@@ -1,7 +1,5 @@
 """Curves kept in the user's cache folder, under what they depend on; arrays alone, never pickled objects."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 from typing import Any

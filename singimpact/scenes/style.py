@@ -1,7 +1,5 @@
 """Styles of curves: Okabe and Ito's colours, and line styles and widths that tell them apart without colour."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -5,8 +5,6 @@
 H, Z         between these: p is folded along H, phi along Z
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -6,8 +6,6 @@ s + T: likewise.  Three rests: at a value of the number the flights with rests a
 (x - c, x') in s and d; two of them are followed until their times s agree.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from itertools import pairwise

@@ -10,8 +10,6 @@ cusp       (tau_*, t), t != 0: a cusp of phi; its mirror image on H is a cusp of
 rest       x' = 0 at t != 0: P crosses Pi_0, and Z meets the mirror image of itself
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial

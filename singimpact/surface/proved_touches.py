@@ -10,8 +10,6 @@ u_t and u_tt vanish at 0 and u, u_t at t, so by Rolle's theorem u_ttt has two ze
 hull with t = 0 has u_ttt or u_tttt free of zeros holds no solution but t = 0.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction

@@ -5,8 +5,6 @@
 t may be negative: the flight that ends at rest, run back.  y removes the launch itself, which is a double zero.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Any
 

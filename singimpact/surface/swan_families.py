@@ -1,7 +1,5 @@
 """Swans of a model over one parameter, isolated with proof, and their curves over two."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction

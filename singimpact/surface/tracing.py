@@ -4,8 +4,6 @@ The contour lines are contourpy's. Small components between the samples are sear
 all neighbours, and the same sign, is followed to the extremum on finer grids until the sign changes.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise

@@ -10,8 +10,6 @@ linear in c.  With the solutions C, S of the free equation at d and the motion q
 Along F = 0 is dc = 0 exactly where a(s) a(s + d) S(d) = 0 [b:events-critical].
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction

@@ -1,7 +1,5 @@
 """Jets that are exact but not rational: polynomials in constants such as cos(12/5), or in letters."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass

@@ -5,8 +5,6 @@ the same polynomial shifted to 1: so nothing is lost as r -> 0 or as r -> 1.  Is
 As functions of r (`of_m`, `series`, `minimal_polynomial`) they are in `multipliers`, and reached from here too.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache

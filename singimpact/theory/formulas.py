@@ -3,8 +3,6 @@
 For a model they are exact when tau_* and lambda are, else mpmath numbers whose digits balls have certified.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction

@@ -1,7 +1,5 @@
 """Source of formulas in the jets of a contact, free of any model: for `generated/`, and for users."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from fractions import Fraction
 from math import factorial

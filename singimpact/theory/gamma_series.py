@@ -9,8 +9,6 @@ written X = sigma^(j+2) (level 0 + level 1 sigma + ...).  Level m of
 is linear in the coefficient tau_m; its factor is a multiple of Q_j^2 lambda^m' - P_j^2, which has no zero in (0, 1).
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import comb

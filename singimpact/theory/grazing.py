@@ -12,8 +12,6 @@ so both are power series in h = ((j + 2)! D/a_j)^(1/(j + 2)), which is s to firs
 rational in the jets.  j = 0: h = sqrt(2 D/a), and the first term (1 + r) sqrt(2 a D) is Nordmark's square root.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction

@@ -10,8 +10,6 @@ v_c = Y'(0), and the impact velocity Y'(1) is v_c after the involution.  Y with 
 a sheet leaves where one is gathered.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any

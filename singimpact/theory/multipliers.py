@@ -4,8 +4,6 @@ At contact order j, r = lambda^(j+1) P_j/Q_j.  At r = 0 the variable is w = (r/(
 all series have rational coefficients.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any

@@ -4,8 +4,6 @@ Terms are sorted by total degree in the small variables, then with the highest p
 first, then k, a, a', ..., then lambda, m, sigma, t, then sums in parentheses.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import sympy

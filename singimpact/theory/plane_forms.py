@@ -4,8 +4,6 @@ p is folded at a tangency point.  Its cusps lie off the tau-axis, where a flight
 cusps of phi are their mirror images under the involution.  At a cusp the germ is given by its own jets.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction

@@ -1,7 +1,5 @@
 """A truncated power series in one variable: its coefficients, its value, and how far it may be trusted."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from math import inf

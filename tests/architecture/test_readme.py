@@ -54,6 +54,17 @@ SAYS = {"threshold": r"v +0\.10086999126", "classify": "negative", "derive": "de
         "branch": "graze", "basins": r"\(3, 3\) orbit", "bifurcation": "300 values"}  # fmt: skip
 
 
+def test_the_command_alone_names_three_that_run(tmp_path):
+    program = [sys.executable, "-m", "singimpact"]
+    alone = subprocess.run(program, capture_output=True, text=True, check=True).stdout.splitlines()
+    assert len(alone) == 6
+    lines = [line.partition("   ")[0].split() for line in map(str.strip, alone) if line.startswith("singimpact ")]
+    assert [line[1] for line in lines] == ["orbit", "bifurcation", "verify"]
+    for line in lines[:2]:
+        subprocess.run([*program, *line[1:]], cwd=tmp_path, check=True, stdout=subprocess.DEVNULL)
+        assert (tmp_path / line[-1]).is_file()
+
+
 def test_commands_exist_and_the_bench_has_their_times(readme):
     shown = lines_of(readme)
     assert {line.split()[0] for line in shown} <= set(COMMANDS)

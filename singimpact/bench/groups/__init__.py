@@ -1,7 +1,5 @@
 """The groups of `singimpact bench`: each a function from an effort to its cases, found when it is asked for."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 
 from singimpact.bench.groups import (

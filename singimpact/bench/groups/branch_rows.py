@@ -3,8 +3,6 @@
 Grazes of x'' + x'/10 + x = A cos(omega t) and doublings of the bouncing ball are judged by their closed forms.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from functools import partial

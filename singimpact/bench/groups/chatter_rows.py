@@ -2,8 +2,6 @@
 wanted; and c = 0.7 or Duffing's model, from other states in every timed call.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial

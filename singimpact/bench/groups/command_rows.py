@@ -3,8 +3,6 @@
 CPU seconds of the process and of its children.  Each command begins with a new cache folder of its own.
 """
 
-from __future__ import annotations
-
 import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -3,8 +3,6 @@
 All evaluate the same cut series, whose exact value at each point is a rational number: what is judged is rounding.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from fractions import Fraction
 from functools import partial

@@ -3,8 +3,6 @@
 The first time computes the curves, by kernels as a new process has them; then the numbers come from the cache.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any

@@ -1,7 +1,5 @@
 """`bench fixed-points`: m3 and mu of the blown-up map at a tangency by digits, and 1 - lambda as r -> 1."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from fractions import Fraction
 from functools import partial

@@ -4,8 +4,6 @@ Times alone, without a truth: each case ends in an exponent for each method, bes
 series in symbols, else the size itself.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction

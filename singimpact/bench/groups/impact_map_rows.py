@@ -4,8 +4,6 @@ Every timed call has other states, and another restitution from 0.5 to 0.999; th
 by balls (`truth.drawn_flights`).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial

@@ -5,8 +5,6 @@ again as long as its stored ratio allows, and `--store` stores those of the run.
 reference too, so that ratios hardly depend on it.
 """
 
-from __future__ import annotations
-
 import json
 import tempfile
 from collections.abc import Callable, Iterator, Sequence

@@ -3,8 +3,6 @@
 Every timed call has other states; the times of some impacts of the first call are judged by balls.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from functools import partial
 from itertools import chain as joined

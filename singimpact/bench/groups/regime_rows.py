@@ -1,7 +1,5 @@
 """`bench regimes`: hard states against 40 digits, one flight each, in four regimes of two families; many digits."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any

@@ -3,8 +3,6 @@
 Each row is a process of its own, for memory that was used is not seen twice.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import partial
 

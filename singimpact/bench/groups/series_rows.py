@@ -4,8 +4,6 @@ x'' + x'/10 + x + 3x^3/10 = 0.3081 + t + t^2/3 with the wall at 0.3 has a tangen
 judged by its value: v_c at the end of a flight from (-0.2, 0.01) that was flown in 45 digits, gamma over -0.1.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial

@@ -4,8 +4,6 @@ Each row is a process of its own, in a cache folder made for all; the states are
 do not hold the time that threads of numpy's linear algebra spend while they wait for work (`fresh.NO_SPINNING`).
 """
 
-from __future__ import annotations
-
 import tempfile
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass

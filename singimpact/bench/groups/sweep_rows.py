@@ -3,8 +3,6 @@
 Beside it stands `map` of the same executor, which keeps nothing, and sends cases one by one to threads.
 """
 
-from __future__ import annotations
-
 import math
 import os
 import tempfile

@@ -2,8 +2,6 @@
 close as wanted; and c = 0.3 or Duffing's model, over other phases in every timed call.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial

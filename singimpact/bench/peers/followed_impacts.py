@@ -1,7 +1,5 @@
 """Impact after impact for any peer that flies to its first event: orbits, chatter limits, thresholds; D G at a hit."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from math import cos

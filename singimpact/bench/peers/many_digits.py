@@ -1,7 +1,5 @@
 """mpmath at the working precision: `findroot` on the closed form, `odefun` and a scan, `findroot` on a polynomial."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from singimpact.bench.problems import Problem

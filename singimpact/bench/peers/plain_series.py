@@ -3,8 +3,6 @@
 sigma, t, v are small; force f(x, x') and forcing g(t) are polynomials in sympy, perhaps with symbols, and tau_* = 0.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import sympy

@@ -1,7 +1,5 @@
 """scipy's DOP853 with a terminal event x - c."""
 
-from __future__ import annotations
-
 from math import cos, sin
 from typing import Any
 

@@ -1,7 +1,5 @@
 """heyoka.py: adaptive Taylor integration with a terminal event x - c = 0 from above."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from singimpact.bench.measuring import NotInstalled

@@ -4,8 +4,6 @@ Truth: one orbit of fixed-step flights, chatter summed from such impacts, lift-o
 package: f, g, rho as expression trees, the period, and the horizon after which a flight counts as one without impact.
 """
 
-from __future__ import annotations
-
 from collections import deque
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace

@@ -4,8 +4,6 @@ Truth: fixed steps of order 8, one state at a time, with rho evaluated by Python
 them too. Shared with the package: f, g and rho as expression trees.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

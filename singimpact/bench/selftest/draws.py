@@ -1,7 +1,5 @@
 """Random states of a model, in its own units of time and velocity, and their flights."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import wraps

@@ -4,8 +4,6 @@ Truth: impacts by fixed steps of order 8, chatter summed from such impacts, zero
 flights from rest by scipy's DOP853. Shared with the package: f, g, rho as expression trees, and the period.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -4,8 +4,6 @@ Truth of D G: central differences of fixed-step flights, with rho evaluated by P
 evaluated by Python at the velocity of the hit. Shared with the package: f, g and rho as expression trees.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

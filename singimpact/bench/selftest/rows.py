@@ -1,7 +1,5 @@
 """The table of a self-test: a row for each comparison, with the states that disagree as they are typed."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from math import isnan

@@ -1,7 +1,5 @@
 """All rows of a self-test in turn."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from time import process_time
 

@@ -3,8 +3,6 @@
 Truth: signs of a_c, evaluated by Python from the expression trees of f and g, which is all that is shared.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -4,8 +4,6 @@ Fixed steps and balls (`bench.truth`) share with the package f and g as expressi
 `digits=20` is the package's own flight in other arithmetic, by other code from the recurrence on.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Chatter limits, thresholds and grown curves; the reference values are those of `digits=`, by ball arithmetic."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial

@@ -1,7 +1,5 @@
 """Starts off the wall, Lyapunov exponents, periodic orbits and grazes of their branches, against closed forms."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from functools import partial

@@ -1,7 +1,5 @@
 """Series at doubles: v_c on arrays, emitted source, gamma, the completion, against the same series in 60 digits."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from fractions import Fraction
 from functools import cache, partial

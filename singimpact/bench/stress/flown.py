@@ -1,7 +1,5 @@
 """Impacts in balls of 60 digits from `bench.truth`, with their derivatives, and the sequences of flights."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache, partial

@@ -5,8 +5,6 @@
 The right status is 0 units, a wrong one inf.  Nothing is forgiven besides: no least error is always allowed.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from math import inf

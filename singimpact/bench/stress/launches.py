@@ -5,8 +5,6 @@ outline P (flights that graze) and to Z (launches that nearly rest), late phases
 that vary within 1/K of a state, K towards 1e4.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from math import acos, pi

@@ -1,7 +1,5 @@
 """Numbers with a name: a_c, tangency and swan points, fixed points, points of an unfolded swan, vertices of curves."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import fields
 from functools import partial

@@ -3,8 +3,6 @@
 A new public function: a `Function` in one of the files here; a test compares the rows with the public names.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from typing import Any

@@ -6,8 +6,6 @@ for a value F after a time T, where tau counts within one period of the forcing:
 lost by rounding omega tau is an error.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from math import log2, pi
 from typing import Any

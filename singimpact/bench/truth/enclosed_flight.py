@@ -8,8 +8,6 @@ q >= |x' - P'|. With M >= |f(P, P') - g + P''| on |s| <= R, A >= |df/dx| and b <
 bounds both (the right side grows with the other unknown), and friction makes q shrink.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass

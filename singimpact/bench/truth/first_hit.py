@@ -1,7 +1,5 @@
 """The first root of x - c after the launch, in balls; between points it is excluded by the bound of x'''."""
 
-from __future__ import annotations
-
 from math import hypot, sqrt
 from typing import Any
 

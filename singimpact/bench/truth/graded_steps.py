@@ -6,8 +6,6 @@ The length of a step depends on the state, on the places of the layers and on th
 on the way. The fineness is halved until two flights agree.
 """
 
-from __future__ import annotations
-
 import types
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ Shared with the package: f, g and rho as expression trees, and the period. Not s
 of rebound, sums of chatter, zeros of a_c.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache

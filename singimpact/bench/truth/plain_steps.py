@@ -3,8 +3,6 @@
 The layers of a model are not known here, so the steps are graded by the rate of the motion alone.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from fractions import Fraction

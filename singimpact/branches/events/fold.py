@@ -1,7 +1,5 @@
 """Folds: two orbits meet, and the parameter turns back along the branch."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

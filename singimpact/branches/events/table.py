@@ -1,7 +1,5 @@
 """All kinds of events of the package, in the order in which a branch looks for them."""
 
-from __future__ import annotations
-
 from singimpact.branches.events.fold import FOLD
 from singimpact.branches.events.graze import GRAZE
 from singimpact.branches.events.interior_graze import INTERIOR_GRAZE

@@ -8,8 +8,6 @@ max |A| (e0 + S)/2.  The next one, launched from e0 with v, lands within d if al
 |A| >= alpha s^2.  All end before e0 + d/(1 - r).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from fractions import Fraction
 from typing import Any

@@ -6,8 +6,6 @@ jump, for x'' = a_c < 0 wherever one touches the wall.  At one end of the radius
 the other a flight passes it.  Both fates belong to open sets of values, so between the ends lies one with neither.
 """
 
-from __future__ import annotations
-
 from fractions import Fraction
 from typing import Any
 

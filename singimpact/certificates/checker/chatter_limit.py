@@ -7,8 +7,6 @@ and r q < 1, what is left of the chatter lies between 2 v/(A (1 - r/q)) and 2 v/
 below W.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from .formulas import Refused, need

@@ -13,8 +13,6 @@ Graze, hidden impact: an orbit touches the wall in its first state.  v = 0 is he
 Krawczyk's operator shows one such orbit in a box.
 """
 
-from __future__ import annotations
-
 from fractions import Fraction
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Certificates from files: each is checked at growing precision, and answered."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 from collections.abc import Callable, Iterator, Sequence

@@ -1,7 +1,5 @@
 """The first impact of a launch."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from .motion import Flight, Model

@@ -10,8 +10,6 @@ A flight from s = -S to s = -l S is launched with S^(j+1) (1-l) W and lands with
     U = sum b_k S^(k-j) Q_k/((k+1)(k+2)),   Q_k = (1 + ... + l^k) + l Q_(k-1)
 """
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Sequence
 from fractions import Fraction

@@ -12,8 +12,6 @@ sequences part, one is in N and one in B_1, which lie apart.  So the entropy of 
 x^-n + x^-(n + m) = 1.
 """
 
-from __future__ import annotations
-
 from fractions import Fraction
 from itertools import pairwise
 from typing import Any

@@ -4,8 +4,6 @@ A ball of launches round a centre is flown with the centre: at the end of a step
 centre is at most the distance of the launches times a bound of the derivatives by them, by the mean value theorem.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

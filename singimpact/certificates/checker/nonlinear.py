@@ -13,8 +13,6 @@ q < 1, (9/4)^2 R^(j+2) Z/8 < a and (9/4) R^(j+1) Z/2 < b: the problem is a contr
 bounds their coefficients.
 """
 
-from __future__ import annotations
-
 from operator import mul
 from typing import Any
 

@@ -10,8 +10,6 @@ The last flight of an orbit that touches the wall in its first state, with v = 0
 leads there in place of G.
 """
 
-from __future__ import annotations
-
 from fractions import Fraction
 from typing import Any, NamedTuple
 

@@ -1,7 +1,5 @@
 """The period of g, checked in exact arithmetic."""
 
-from __future__ import annotations
-
 import ast
 from fractions import Fraction
 

@@ -4,8 +4,6 @@ A form is a function that refuses a value; a dictionary of forms, whose keys are
 in "?" may be missing; or a list [form, least, most] of values of one form.
 """
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Callable

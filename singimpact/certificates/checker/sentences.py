@@ -1,7 +1,5 @@
 """The sentence of a certificate, as the programs print it: every number with its radius, a bound at its outer end."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Numbers as a certificate writes them, compared with balls."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from fractions import Fraction
 from typing import Any

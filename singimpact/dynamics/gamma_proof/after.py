@@ -9,8 +9,6 @@ speed is int (e1 - u)|A|/(e1 - e) >= |A(e)| (e1 - e)/2.  So chatter completes be
 that is launched after tau_*, as long as that is within the interval on which |A| increases.
 """
 
-from __future__ import annotations
-
 from fractions import Fraction
 from itertools import pairwise
 from typing import Any, NamedTuple

@@ -5,8 +5,6 @@ below the last power, of S and of d, are those of f; what a product has beyond i
 A model is one polynomial in which S is z^n and d is z, so that flint multiplies both variables at once.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

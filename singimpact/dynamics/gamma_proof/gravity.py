@@ -5,8 +5,6 @@ tau_*, and y = X e^(b t)/C it is y'' = A(s), A = e^(b t) C^3 a_c, with the same 
 dt/ds = 1/(1 + w s^2) and C^-2 = 1 + w s^2, the series in s hold for w > 0, w = 0 and w < 0 alike.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache

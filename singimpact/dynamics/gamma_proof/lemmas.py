@@ -9,8 +9,6 @@ Lemma 1: H(S, .) increases on [0, 1].  Lemma 2: |H U| <= R S^N on l = L(S).  Lem
 |dS| <= M |dy| of the strip into themselves.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise

@@ -12,8 +12,6 @@ from right side to right side of this problem is defined for complex S and l, |S
 Where it contracts, |Z''| <= z, so |W^|, |U^| <= z/2, and Cauchy's bounds hold for all that the series leave out.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache

@@ -1,7 +1,5 @@
 """`certified_gamma`: gamma of an analytic model proved on an interval of launch times before a contact point."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction

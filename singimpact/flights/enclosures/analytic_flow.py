@@ -14,8 +14,6 @@ u = (V + G R) e^(L R), w^2 = |f_x|, L = w + |f_v|, and M = G + L u for every R. 
 |z| <= V R + M R^2/2, |z'| <= V + M R, which the flight cannot leave.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil, log, log2

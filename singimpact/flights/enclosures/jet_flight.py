@@ -17,8 +17,6 @@ With |c| the sum of the sizes of the coefficients |a b| <= |a| |b|: jets are a B
 defined on them by its Taylor series, which ends. Coefficients are balls, complex balls or series of balls.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction

@@ -13,8 +13,6 @@ derivative by the launch time is that of a launch with x less by v and x' less b
 derivative by v, which the forcing does not drive.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 

@@ -11,8 +11,6 @@ by a number it starts from, obeys the same bound with K_psi = (M_psi R^(1-n) + S
 K (1 + h) h times second derivatives of f, is there since f_x and f_v are taken along P and not along z.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import ceil, log2

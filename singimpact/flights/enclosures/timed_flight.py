@@ -3,8 +3,6 @@
 z = x - c,   z'   at a time T after the launch,   with their derivatives by tau, v, and numbers of the model.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil

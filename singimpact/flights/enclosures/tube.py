@@ -3,8 +3,6 @@
 The first root is isolated on pieces where the sign of the function or of its slope is certain.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -6,8 +6,6 @@ y = x' - G(t) + V(x)/x' has y' = m - V x''/x'^2, so with |x''| <= B and the laun
     x' >= u - 2 sup|G| - 4 sup|V|/u - 4 t sup|V| B/u^2 .
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any

@@ -8,8 +8,6 @@ A launch with 0 < v <= kappa Z begins between them and stays there, so z >= z_0 
 The slopes are looked for in doubles on a grid; the inequalities are then proved in balls on pieces of [0, Z].
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction

@@ -5,8 +5,6 @@ a polynomial in what x and x' are more than there; if its coefficients are <= 0 
 below every g, it is so.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache

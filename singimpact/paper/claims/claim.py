@@ -1,7 +1,5 @@
 """`Claim`: a sentence of the paper that can be checked.  `Verdict`: what its verifier found."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from math import floor, log10

@@ -1,7 +1,5 @@
 """Decide one claim: its verifier on the printed statement, on the corrected one, and trials of the two on models."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass

@@ -8,8 +8,6 @@ on.  An edited verifier runs again with its file and their dependants; an edit b
 claim is built for its key.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 import re

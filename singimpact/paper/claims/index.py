@@ -5,8 +5,6 @@ paper does not have; a file that is loaded must agree with it.  A list, the grap
 index alone.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass

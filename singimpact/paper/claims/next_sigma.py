@@ -1,7 +1,5 @@
 """The next sigma in the coordinates of the fold form without higher terms: what the claims on psi q are read in."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import sympy

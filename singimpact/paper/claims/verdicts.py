@@ -277,7 +277,8 @@ class VerdictTable(Sequence["Verdict"]):
         width : int or None. Columns to lay it out in; None leaves each claim on one line.
         paint : colours a verdict's name.
         """
-        parts = [laid_out(self._rows(), width, paint), self._summary(), self._misprints(width)]
+        counts = "\n".join(wrapped("", self._summary(), width))
+        parts = [laid_out(self._rows(), width, paint), counts, self._misprints(width)]
         return "\n\n".join(part for part in parts if part)
 
     def __str__(self) -> str:
@@ -297,18 +298,56 @@ class VerdictTable(Sequence["Verdict"]):
             Row(v.id, titles.get(v.id, ""), v.kind, v.in_words, v.evidence, f"{v.seconds:.2f}") for v in self.verdicts
         ]
 
+    def screen(self, width: int | None = None) -> str:
+        """What `singimpact verify` prints of all claims: counts, what they rest on, errors, and a line a correction.
+
+        Parameters
+        ----------
+        width : columns; longer lines end in an ellipsis. None leaves them as long as they are.
+        """
+        wrong = [f"  {verdict.id}  {verdict.evidence}" for verdict in self if verdict.kind == ERROR]
+        lines = [self._summary(), self._rests_on(), *(["", "In error:", *wrong] if wrong else [])]
+        found = [verdict for verdict in self if verdict.kind == CORRECTED]
+        if found:
+            ids = max(len(verdict.id) for verdict in found)
+            lines += ["", f"Misprinted, {len(found)} (`singimpact errata` gives the reasons):"]
+            lines += [f"  {verdict.id:{ids}}  {_correction(verdict)}" for verdict in found]
+        return "\n".join(line if width is None or len(line) <= width else f"{line[: width - 1]}…" for line in lines)
+
+    def html(self) -> str:
+        """All claims as an HTML page with formulas, for a browser without a network."""
+        from singimpact.documents.rendering import as_page
+
+        return as_page([self._summary(), self._rests_on()], self.verdicts)
+
+    def _rests_on(self) -> str:
+        certificates = sum(len(verdict.certificates) for verdict in self)
+        theorems = {name for verdict in self for name in verdict.effective_modulo}
+        trials = sum(len(verdict.trials) for verdict in self)
+        return (
+            f"They rest on {certificates} certificates for a second program, {len(theorems)} theorems that are named, "
+            f"and {trials} trials of misprints on models."
+        )
+
     def _summary(self) -> str:
         counts = Counter(verdict.kind for verdict in self.verdicts)
         seconds = sum(verdict.seconds for verdict in self.verdicts)
         named = {MODULO: f"{MODULO} a theorem"}
         told = ", ".join(f"{count} {named.get(kind, kind)}" for kind, count in counts.most_common())
-        return f"{len(self.verdicts)} claims: {told or 'none'}; {seconds:.1f} s"
+        return f"{len(self.verdicts)} claims: {told or 'none'}; {seconds:.1f} s in their verifiers."
 
     def _misprints(self, width: int | None) -> str:
         found = [verdict for verdict in self.verdicts if verdict.kind == CORRECTED]
         if not found:
             return ""
         return "\n\n".join([f"Misprinted: {len(found)}", *(_misprint(verdict, width) for verdict in found)])
+
+
+def _correction(verdict: Verdict) -> str:
+    """A misprint on one line: for what is printed, read what holds."""
+    from singimpact.documents.rendering import unicode_line
+
+    return f"for {unicode_line(verdict.printed)}, read {unicode_line(verdict.corrected or '')}"
 
 
 def _misprint(verdict: Verdict, width: int | None) -> str:

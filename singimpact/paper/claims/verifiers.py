@@ -1,7 +1,5 @@
 """Ways to decide a statement: an identity of exact expressions, and signs proved on an interval."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import Any

@@ -4,8 +4,6 @@ Heights of the loops of W^s(X), the foot X as a function of r, the orbit that is
 where a swan's arc meets other branches of P; gamma of impacts that lose a power of a low speed.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction

@@ -1,7 +1,5 @@
 """Figures 3 to 8: the dynamics of G near Pi_0, at regular, tangency and swan points."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from functools import lru_cache
 from typing import Any

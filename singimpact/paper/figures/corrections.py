@@ -1,7 +1,5 @@
 """Figures B1 to B3: a linear oscillator as a ball, the first correction at a swan, exponents of the threshold."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 from math import log
 

@@ -1,7 +1,5 @@
 """Pictures drawn by matplotlib at the size of a printed page: letters clear of curves, a legend in words below."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager

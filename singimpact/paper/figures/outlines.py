@@ -1,7 +1,5 @@
 """Figures 1, 2, 9 and 10: the impact surface with its horizon, how its outline changes, outlines of a swan's zeros."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache

@@ -1,7 +1,5 @@
 """The data of a figure before it is drawn: panels of lines, regions and letters."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Any
 

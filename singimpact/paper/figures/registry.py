@@ -1,7 +1,5 @@
 """Figure numbers and the functions that compute them, found when they are asked for."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any

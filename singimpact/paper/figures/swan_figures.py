@@ -1,7 +1,5 @@
 """Figures 11, 12, 14, 15: an unfolded swan on V', and its images under p and phi."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import lru_cache
 

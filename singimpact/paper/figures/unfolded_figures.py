@@ -1,7 +1,5 @@
 """Figures 13, 16, 17: the dynamics of G that an unfolded swan creates."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import lru_cache
 

@@ -5,8 +5,6 @@ every marked function that it called is remembered: `derived_from` answers from 
 certificates of its steps, which join the collection that is open each time that the result is used.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from contextvars import ContextVar
 from functools import wraps

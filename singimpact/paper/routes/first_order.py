@@ -4,8 +4,6 @@ S = s + h S_1(s) and Y = (1 + h M_1(s)) x keep the wall x = 0 and multiply both 
 so the restitution stays what it is.  Both sides are compared to first order in h.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import sympy

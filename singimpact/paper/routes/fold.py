@@ -4,8 +4,6 @@ Every step is made from the one before it; nothing is transcribed.  Symbols: sig
 The leading parts are exact polynomials; what is cut is O(3) before the blow-up and O(s) after it.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import sympy

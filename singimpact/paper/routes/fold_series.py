@@ -4,8 +4,6 @@ A second way to the numbers of `invariant_curve` that shares no solver with it. 
 k = a'/6.  The stable manifold of h' is the graph m(s) with (m o s')^2 (s'/s)^2 = Q(s, m), found power by power.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction

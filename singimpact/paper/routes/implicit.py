@@ -5,8 +5,6 @@ divided by t, and y_c = 0 is solved for v.  Symbols: sigma, t, v; a, a_d1, a_d2,
 f_10, f_01, ... (derivatives of f at (c, 0)); r.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import comb, factorial
 from typing import Any

@@ -9,8 +9,6 @@ solves l^(j+1) W(l1) = r U(l) + O(S).  For launches at sigma >= 0, and at a tang
 j + 1 in (sigma, t) serve as they are.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import sympy

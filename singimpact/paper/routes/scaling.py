@@ -6,8 +6,6 @@ letters here: a_c = 12 kappa (e + sigma^2) + sigma^3 alpha and f(c + x, x') - f(
 in these letters holds to all orders.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import sympy

@@ -3,8 +3,6 @@
 Symbols: s, m with (sigma, t) = (s, s m); mbar for the new m; ell = -a''/24; r.  What is cut is O(s).
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import sympy

@@ -4,8 +4,6 @@ Time is measured from the swan in half the distance of the two zeros A, B of a; 
 negative one.  A flight from sigma lands after t; nothing is cut, the model has no higher terms.
 """
 
-from __future__ import annotations
-
 from math import factorial
 from typing import Any
 

@@ -6,8 +6,6 @@ and g' taken on the flight, they change at the rates `RATES`; a rate is formed b
 certificate: the polynomial with each letter moved by e times its rate, to first order in e.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import sympy

@@ -1,7 +1,5 @@
 """Beyond the paper: what the same steps give that it does not state, each sentence with the claim that decides it."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import sympy

@@ -4,8 +4,6 @@
 goes before them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 from singimpact.documents.document_steps import Section

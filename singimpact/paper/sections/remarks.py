@@ -4,8 +4,6 @@ Verdicts, corrections and numbers are computed by the claims; a claim that is co
 one and is not corrected, fails a test.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cache
 

@@ -1,7 +1,5 @@
 """Section 2: from the equation of motion to the sheet v_c and the two maps p_c and phi_c."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import sympy

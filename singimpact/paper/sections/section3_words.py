@@ -1,7 +1,5 @@
 """Section 3: the derivative of G at a regular point, and the direction along which chatter comes to rest."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from singimpact.documents.arranging import factored

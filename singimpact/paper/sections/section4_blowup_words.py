@@ -1,7 +1,5 @@
 """Section 4, second part: the blow-up at a tangency point, its fixed points and multipliers, all of it in lambda."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import sympy

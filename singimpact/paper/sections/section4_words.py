@@ -1,7 +1,5 @@
 """Section 4: the expansion of v_c, and the tangency point from the fold to the invariant curve."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import sympy

@@ -1,7 +1,5 @@
 """Section 5: the blow-up at a swan point, its fixed point and its multipliers."""
 
-from __future__ import annotations
-
 import sympy
 
 from singimpact.documents.arranging import factored, in_powers

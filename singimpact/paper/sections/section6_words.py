@@ -1,7 +1,5 @@
 """Section 6: the unfolded swan in its universal form, where every curve is algebraic."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import sympy

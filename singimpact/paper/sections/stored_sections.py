@@ -1,7 +1,5 @@
 """Derivations and the errata's legend, kept in the user's cache folder under their source; marks of what they show."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Sequence
 
 from singimpact import cache

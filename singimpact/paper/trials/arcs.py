@@ -1,7 +1,5 @@
 """The impact map of the package near a tangency with a' > 0: jumps, sides of gamma, eigenvalues, lift-off."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache

@@ -4,8 +4,6 @@ That degree is computed exactly before it is measured: a part of the series coun
 zero as polynomials in those jets that are not exactly zero, and as present when a ball excludes zero.
 """
 
-from __future__ import annotations
-
 from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction

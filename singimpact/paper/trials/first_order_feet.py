@@ -1,7 +1,5 @@
 """The foot X of an unfolded negative swan of five oscillators, at two half distances H of its tangency points."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache

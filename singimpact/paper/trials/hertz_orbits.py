@@ -4,8 +4,6 @@
 given part of h there, for impacts until a side is decided grow like its inverse.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache

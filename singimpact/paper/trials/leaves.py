@@ -1,7 +1,5 @@
 """Orbits near a tangency with a' < 0 on two models: no jumps, chatter, and leaves followed backwards."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 

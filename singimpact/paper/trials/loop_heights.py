@@ -3,8 +3,6 @@
 A line lies h half distances of A and B before A, and heights are v/(a'(A) (A - tau)^2).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache

@@ -1,7 +1,5 @@
 """Orbits that start beside gamma, on six oscillators: where chatter below it ends, how many impacts follow above it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cache
 from math import ceil, log

@@ -1,7 +1,5 @@
 """Numbers on the impact surface of two models: gradients, points of H and Z, jumps, crossings after the first hit."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any

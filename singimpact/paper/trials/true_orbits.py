@@ -5,8 +5,6 @@ method from the classical guesses.  On these, gamma is reached by following the 
 to it, from a point that is not on it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction

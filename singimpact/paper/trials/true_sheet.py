@@ -1,7 +1,5 @@
 """The sheet V_c' of two models found on true flights: launch and impact velocities of flights that are back after t."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 from math import factorial

@@ -5,8 +5,6 @@ A flight of length t that lands at sigma is followed by one of length t', t' (q 
 does with r: two values of r enclose X between them.
 """
 
-from __future__ import annotations
-
 import itertools
 from dataclasses import dataclass
 from fractions import Fraction

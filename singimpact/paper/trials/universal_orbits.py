@@ -1,7 +1,5 @@
 """Orbits of the universal unfolded swan: stable manifolds, their loops, and what gamma separates."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise

@@ -1,6 +1,7 @@
 """Every claim has a verdict that is computed, and every verifier rejects what is wrong."""
 
 import json
+import re
 import subprocess
 import sys
 from dataclasses import replace
@@ -20,6 +21,7 @@ from singimpact.paper import (
     Claim,
     Statement,
     Trial,
+    VerdictTable,
     compared,
     decide,
     derived_from,
@@ -279,6 +281,21 @@ def test_trials_are_decided_by_the_statements(name):
 def test_compared_to_a_tolerance():
     assert compared("m", "q", 1.0, 1.01, 1.0001).tells
     assert not compared("m", "q", 1.0, 1.0001, 1.0).tells
+
+
+def test_corrections_are_lines_of_unicode_and_formulas_of_a_page(verdicts):
+    claims = [CLAIMS[name] for name in verdicts]
+    found = VerdictTable(claims, list(verdicts.values()))
+    lines = found.screen().splitlines()
+    corrected = [name for name, verdict in verdicts.items() if verdict.kind == "corrected"]
+    assert [line.split()[0] for line in lines if ", read " in line] == corrected
+    assert not any("\\" in line for line in lines)
+    assert "  s3-dvdt                for ∂v_c/∂t(z_*) = ½a_*, read ∂v_c/∂t(z_*) = −½ a" in lines
+    assert len(lines) <= len(corrected) + 6
+    assert max(map(len, found.screen(90).splitlines())) == 90
+    page = found.html()
+    assert page.count("<math ") == len(verdicts) + len(corrected)
+    assert not re.search(r"https?://(?!www\.w3\.org/)", page)  # nothing is loaded
 
 
 def test_verify_from_the_command_line():

@@ -1,6 +1,7 @@
 """`singimpact verify`: the table at any width, the JSON, the exit codes, the misprints."""
 
 import json
+import shlex
 import subprocess
 import sys
 
@@ -18,8 +19,32 @@ def room(monkeypatch):
 TABLE = VerdictTable(CLAIMS, list(VERDICTS.values()))
 
 
+def test_one_screen(singimpact, tmp_path):
+    lines = singimpact("verify").stdout.splitlines()
+    assert lines[0].startswith("3 claims: 2 proved, 1 corrected; ")
+    assert "  p:odd  for a = −b/2, read a = b/2" in lines
+    assert "verify --all" in lines[-2]
+    program, *asked = shlex.split(lines[-1].partition(": ")[2])
+    assert program == "singimpact"
+    assert asked[0] == "orbit"
+    assert singimpact(*asked[:-1], tmp_path / "orbit.png").exit_code == 0
+    assert (tmp_path / "orbit.png").stat().st_size > 10_000
+
+
+def test_what_ends_in_error_is_on_the_screen():
+    failed = [*VERDICTS.values(), FakeVerdict("e:new", "error", "error", evidence="timed out after 10 s")]
+    assert "  e:new  timed out after 10 s" in VerdictTable([*CLAIMS, CLAIMS[0]], failed).screen().splitlines()
+
+
+def test_a_page_with_formulas(singimpact, tmp_path):
+    assert singimpact("verify", "-o", tmp_path / "verify.html").exit_code == 0
+    page = (tmp_path / "verify.html").read_text()
+    assert page.count("<math ") == 4
+    assert "<mfrac>" in page
+
+
 def test_all_claims(singimpact):
-    result = singimpact("verify")
+    result = singimpact("verify", "--all")
     assert result.exit_code == 0
     assert [line.split()[0] for line in result.stdout.splitlines()[:4]] == ["id", "e:meq", "e:qdef", "p:odd"]
     assert "Misprinted: 1" in result.stdout

@@ -184,7 +184,10 @@ def main() -> int:
             each = _beside_ordinary(each, fields)
         found.append(each)
         if each.fault or options.only:
-            print(f"{each.number}: {each.seconds:.2f} s of {each.allowed:.2f}, {each.memory >> 20} MB, {each.end[:300]}", flush=True)
+            print(
+                f"{each.number}: {each.seconds:.2f} s of {each.allowed:.2f}, {each.memory >> 20} MB, {each.end[:300]}",
+                flush=True,
+            )
     print(", ".join(f"{count} {end}" for end, count in Counter(run.end.split(":")[0] for run in found).most_common()))
     slowest = sorted(found, key=lambda run: -run.seconds)[:8]
     print("slowest calls:", ", ".join(f"{run.number} {run.seconds:.2f} s ({run.end[:30]})" for run in slowest))

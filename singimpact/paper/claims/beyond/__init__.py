@@ -3,8 +3,6 @@
 Not here: claims of the paper (`claims.sections`). None is printed anywhere, so none is corrected; mutants stand beside.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 from singimpact.paper.claims.claim import Claim

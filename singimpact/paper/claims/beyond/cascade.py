@@ -1,7 +1,5 @@
 """The cascade beside a border orbit: what a launch next to a release forgets, and how fast the windows shrink."""
 
-from __future__ import annotations
-
 from functools import cache
 from typing import Any
 

@@ -4,8 +4,6 @@ R(t; s) is the flight at rest at the wall at s, Y(t, s) its variation with Y = 0
 wall.  psi takes a launch (tau, v) to its flight, told by (x, x') at one time.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

@@ -4,8 +4,6 @@ Two rests stand at m - h and m + h.  With kappa = 1/(1 - omega^2) the flight is 
 + Q sin(t - m).  Letters: Cm, Sm for cosine and sine of omega m, Cw, Sw of omega h, Ch, Sh of h.
 """
 
-from __future__ import annotations
-
 from fractions import Fraction
 from functools import cache
 from typing import Any

@@ -4,8 +4,6 @@ The model is x'' = s^j; l is the ratio of landing and launch time, and L stands 
 j holds for every j.  P and Q are the polynomials of `theory.multipliers`.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import sympy

@@ -1,7 +1,5 @@
 """The first correction to the blown-up map, removed at every contact order; what is left of it at an unfolded swan."""
 
-from __future__ import annotations
-
 from math import factorial
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The foot X of the universal negative swan as a function of r: it rises, is enclosed, and grows like a power."""
 
-from __future__ import annotations
-
 import itertools
 from fractions import Fraction
 from functools import cache

@@ -5,8 +5,6 @@
 How it is proved: `dynamics.gamma_proof`; longer intervals of r: `osc.certified_gamma(restitution=)`.
 """
 
-from __future__ import annotations
-
 from fractions import Fraction
 from itertools import pairwise
 from typing import NamedTuple

@@ -5,8 +5,6 @@ change s = S/C, y = X E/C makes it y'' = A(s), A = E C^3 a_c; the wall is y = 0 
 the functions are hyperbolic, for w = 0 they are 1 and t.
 """
 
-from __future__ import annotations
-
 from fractions import Fraction
 from math import comb, factorial
 from typing import Any

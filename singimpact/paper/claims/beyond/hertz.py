@@ -7,8 +7,6 @@ The balances of powers here are exact to the orders named, and formal: rho'(0) =
 and no theorem on stable manifolds applies; that gamma exists, and a bound of the remainder, are not shown.
 """
 
-from __future__ import annotations
-
 from fractions import Fraction
 from typing import Any
 

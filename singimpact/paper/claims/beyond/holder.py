@@ -1,7 +1,5 @@
 """gamma as a threshold: tau_* - tau_inf = C delta^alpha below it, ln(1/delta)/ln mu impacts above it."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import sympy

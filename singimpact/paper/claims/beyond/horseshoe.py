@@ -4,8 +4,6 @@
 `b:horseshoe` : sets that are crossed by images of one another, from which chaos follows without that theorem.
 """
 
-from __future__ import annotations
-
 from fractions import Fraction
 from functools import cache
 from math import pi

@@ -4,8 +4,6 @@ Next to A the motion is x'' = a'(A) sigma in the limit.  In units of a'(A) sigma
 the ratio l of landing and launch time w = (1 - l)(2 + l)/6.
 """
 
-from __future__ import annotations
-
 from math import log
 from typing import Any
 

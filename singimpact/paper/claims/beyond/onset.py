@@ -1,7 +1,5 @@
 """Orbits born at a negative swan: none that recurs within it, and one chattering orbit that starts at A."""
 
-from __future__ import annotations
-
 from math import sqrt
 from typing import Any
 

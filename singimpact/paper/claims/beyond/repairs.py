@@ -1,7 +1,5 @@
 """Lemmas that corrected statements of the paper need and the paper does not have."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from singimpact.algebra.certificates import positive_on

@@ -3,8 +3,6 @@
 Not here: how they are run (`claims.engine`).  A statement is encoded as printed; mutants stand beside it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Section 2: the impact surface and its sheet V_c'."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import sympy

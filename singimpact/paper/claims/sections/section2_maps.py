@@ -1,7 +1,5 @@
 """Section 2: singular sets of p_c and phi_c, the first-hit map, the correspondence principle."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import sympy

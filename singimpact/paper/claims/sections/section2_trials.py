@@ -1,7 +1,5 @@
 """Sections 2 and 3: what is printed and what is corrected there, tried on two models."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

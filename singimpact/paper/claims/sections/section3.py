@@ -1,7 +1,5 @@
 """Section 3: nondegenerate chatter at regular points of Pi_0."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import sympy

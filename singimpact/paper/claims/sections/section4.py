@@ -1,7 +1,5 @@
 """Section 4: the Taylor expansion of v_c, and its leading parts at tangency and swan points."""
 
-from __future__ import annotations
-
 from math import factorial
 from typing import Any
 

@@ -5,8 +5,6 @@ parts; what is left out is O(S) on a compact set of ratios, so that a strict ine
 small S too.  Only the existence of gamma uses a theorem, `STABLE`.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import sympy

@@ -1,7 +1,5 @@
 """Sections 4 and 4.1(a): what is printed and what is corrected there, tried on two models or at two values of r."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Section 4.1(a): the discontinuity arc P_* and the theorem on the invariant arc gamma at a tangency with a' > 0."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import sympy

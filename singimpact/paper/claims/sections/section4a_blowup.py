@@ -1,7 +1,5 @@
 """Section 4.1(a): the blow-up h' at a tangency, and its fixed points for all r in (0, 1)."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Section 4.1(a), first part: p and phi at a tangency point, the fold form, h and Q_r."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import sympy

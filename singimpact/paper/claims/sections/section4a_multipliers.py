@@ -1,7 +1,5 @@
 """Section 4.1(a): the Jacobian of h' on s = 0, the saddle at m3, and the tangent of beta."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

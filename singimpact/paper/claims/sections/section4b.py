@@ -1,7 +1,5 @@
 """Section 4.1(b): tangency points with a' < 0; k = a'/6 < 0 and rays t = l sigma."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import sympy

@@ -1,7 +1,5 @@
 """Section 4.1(b): what orbits near a tangency with a' < 0 do, and the leaves that fill a neighbourhood."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 from typing import Any
 

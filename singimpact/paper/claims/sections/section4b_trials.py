@@ -1,7 +1,5 @@
 """Section 4.1(b): what is printed and what is corrected there, tried on two models at a tangency with a' < 0."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Section 5: swan points, a = a' = 0, a'' != 0."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import sympy

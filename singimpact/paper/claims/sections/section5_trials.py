@@ -1,7 +1,5 @@
 """Section 5: what is printed and what is corrected there, tried at the swans of two models or at two values of r."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Section 6: the unfolded swan, in its universal model x'' = 12 kappa (t^2 - 1); kappa > 0 positive, < 0 negative."""
 
-from __future__ import annotations
-
 from math import factorial
 from typing import Any
 

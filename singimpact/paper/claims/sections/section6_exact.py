@@ -4,8 +4,6 @@ What is visible (its boundary by conics, each cell of the plane by a rational po
 often R phi(AE) meets the outline, and that chatter is complete beyond B where a < 0.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from itertools import combinations, pairwise
 from typing import Any, NamedTuple

@@ -1,7 +1,5 @@
 """Sections 6.2 and 7: the negative swan in its universal model, kappa < 0: visible part, images, loops."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import sympy

@@ -1,7 +1,5 @@
 """Section 6: what the regions of an unfolded swan are bounded by, and where the two maps have cusps beside A and B."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 from typing import Any
 

@@ -6,8 +6,6 @@ persist for small H: each by the implicit function theorem or by compactness, on
 decides these numbers.  Where a quadratic form is definite, nothing else is near the swan either: it outweighs the rest.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any

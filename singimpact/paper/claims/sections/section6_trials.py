@@ -1,7 +1,5 @@
 """Section 6: what is printed and what is corrected there, tried on the unfolded swans of two models."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 from singimpact.contact.points import tangency_points
