@@ -7,6 +7,7 @@ import subprocess
 import sys
 import tomllib
 
+import matplotlib.image as mpimg
 import pytest
 
 from singimpact.bench import COMMANDS as commands_COMMANDS
@@ -18,8 +19,9 @@ def readme(clone):
     return (clone / "README.md").read_text()
 
 
-def test_example_prints_what_it_says(readme):
-    """Python blocks in order, as one session."""
+def test_three_lines_draw_the_picture_beside_them(readme, clone, tmp_path, monkeypatch):
+    """Python blocks in order, as one session; it writes the picture that stands below the first."""
+    monkeypatch.chdir(tmp_path)
     blocks = re.findall(r"```python\n(.*?)```", readme, re.DOTALL)
     assert blocks
     parser, runner = doctest.DocTestParser(), doctest.DocTestRunner(verbose=False)
@@ -27,6 +29,13 @@ def test_example_prints_what_it_says(readme):
     told = []
     runner.run(session, out=told.append)
     assert runner.summarize(verbose=False).failed == 0, "".join(told)
+    drawn, shown = (mpimg.imread(place / "basins.png")[..., :3] for place in (tmp_path, clone / "docs" / "pictures"))
+    assert drawn.shape == shown.shape
+    assert abs(drawn - shown).mean() < 0.01
+    assert abs(drawn - shown[:, ::-1]).mean() > 0.1  # another picture is told from it
+    assert readme.index("basins.png") < readme.index("## ")  # before any heading
+
+
 
 
 def test_two_commands(readme):
