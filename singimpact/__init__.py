@@ -38,8 +38,12 @@ if TYPE_CHECKING:
     from singimpact.studies import (
         basins as basins,
         bifurcation as bifurcation,
+        certified_gamma as certified_gamma,
+        chatter_limit as chatter_limit,
         classify as classify,
         grown_gamma as grown_gamma,
+        orbit as orbit,
+        periodic as periodic,
         swan_points as swan_points,
     )
     from singimpact.surface.impact_surface import ImpactSurface as ImpactSurface
@@ -73,7 +77,7 @@ _FILES = {
     "paper.sections.errata": "errata",
     "scenes": "Scene plot",
     "scenes.explore": "explore",
-    "studies": "basins bifurcation classify grown_gamma swan_points",
+    "studies": "basins bifurcation certified_gamma chatter_limit classify grown_gamma orbit periodic swan_points",
     "surface.impact_surface": "ImpactSurface",
 }
 _HOMES = {name: f"singimpact.{file}" for file, names in _FILES.items() for name in names.split()}

@@ -5,9 +5,10 @@ A room's own files import one another by file; whoever stands outside (the publi
 
 from collections.abc import Callable, Mapping
 from importlib import import_module
+from types import MethodType
 from typing import Any
 
-__all__ = ["names_of"]
+__all__ = ["Study", "names_of"]
 
 
 def names_of(room: str, files: Mapping[str, str]) -> Callable[[str], Any]:
@@ -23,3 +24,21 @@ def names_of(room: str, files: Mapping[str, str]) -> Callable[[str], Any]:
         raise AttributeError(f"module {room!r} has no attribute {name!r}")
 
     return value_of
+
+
+class Study:
+    """A function of `singimpact` as a method: `osc.basins(...)` is `si.basins(osc, ...)`, and has its documentation.
+
+    Examples
+    --------
+    >>> import singimpact as si
+    >>> si.ImpactOscillator.lyapunov is si.lyapunov
+    True
+    """
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.name = name
+
+    def __get__(self, thing: object, kind: type) -> Callable[..., Any]:
+        function: Callable[..., Any] = getattr(import_module("singimpact"), self.name)
+        return function if thing is None else MethodType(function, thing)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from singimpact.algebra.numbers import compare, constant
+from singimpact.handed_on import Study
 from singimpact.inputs import InputError, checked_keywords, checked_methods, refuse, whole
 from singimpact.oscillator.model import Oscillator
 
@@ -40,6 +41,11 @@ class ImpactOscillator(Oscillator):
     """
 
     __slots__ = ()
+
+    # studies of the model as a whole, each documented as a function of `singimpact`
+    basins, bifurcation, lyapunov, threshold = Study(), Study(), Study(), Study()
+    tangency_points, classify, grown_gamma = Study(), Study(), Study()
+    border_orbits, transitions, explore, selftest = Study(), Study(), Study(), Study()
 
     def first_hit(
         self,

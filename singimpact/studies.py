@@ -5,8 +5,10 @@ Each function calls one function of a sub-package, and reads windows and interva
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from fractions import Fraction
+from functools import wraps
+from inspect import signature
 from typing import TYPE_CHECKING, Any
 
 from singimpact.algebra.numbers import as_float, as_fraction, constant
@@ -239,6 +241,25 @@ def grown_gamma(osc: Oscillator, window: Any = None, tau: Any = None) -> list[Cu
         tau_ends, v_ends = usual if window is None else _two_ends(window, named)
         window = Window.read(tau_ends, v_ends, axes=STATES)
     return grown_gamma(osc, window, tau)
+
+
+def _of_models(method: Callable[..., Any]) -> Callable[..., Any]:
+    """A method of the model as a function, whose first argument is checked; documented at the method."""
+
+    @wraps(method)
+    def study(osc: Oscillator, *values: Any, **named: Any) -> Any:
+        _require_model(osc)
+        return method(osc, *values, **named)
+
+    takes = signature(method)
+    first, *others = takes.parameters.values()
+    study.__signature__ = takes.replace(parameters=[first.replace(name="osc"), *others])  # type: ignore[attr-defined]
+    return checked_keywords(study)
+
+
+orbit, periodic = _of_models(ImpactOscillator.orbit), _of_models(ImpactOscillator.periodic)
+chatter_limit = _of_models(ImpactOscillator.chatter_limit)
+certified_gamma = _of_models(ImpactOscillator.certified_gamma)
 
 
 def _require_model(osc: Any) -> None:

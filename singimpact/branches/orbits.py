@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from singimpact.algebra.numbers import as_float
+from singimpact.handed_on import Study
 from singimpact.inputs import InputError
 from singimpact.oscillator.model import Oscillator
 from singimpact.result import Result, Results
@@ -51,6 +52,8 @@ class PeriodicOrbit(Result):
     kind: str = "impacts"
     visible: bool = True
     x: Any = None
+
+    branch, manifold, homoclinic_points = Study(), Study(), Study()  # functions of `singimpact`, documented there
 
     def as_dict(self) -> dict[str, Any]:
         """n (none for chatter), k, kind, stability, visibility, states and multipliers."""
@@ -171,7 +174,8 @@ class PeriodicOrbits(Results, list[PeriodicOrbit]):
             try:
                 return super().__getitem__(index)
             except IndexError:
-                notes = " ".join(self.notes) or "others, with other n and k, may attract: si.basins shows which do"
+                doubts = () if callable(self._doubts) else self._doubts  # a proof is not run for a sentence
+                notes = " ".join((*self._notes, *doubts)) or "others, of other n and k, may attract: see si.basins"
                 raise IndexError(f"there is no orbit {index} of these {len(self)}: {notes}") from None
 
     @property

@@ -115,7 +115,7 @@ KINDS = {1: "gamma", -1: "foliation"}
 
 
 @checked_keywords
-def tangency_points(oscillator: Oscillator, digits: int = 30) -> TangencyPoints:
+def tangency_points(osc: Oscillator, digits: int = 30) -> TangencyPoints:
     """The zeros of a_c over one period [0, T), or all real zeros when g is a polynomial.
 
     Parameters
@@ -132,7 +132,7 @@ def tangency_points(oscillator: Oscillator, digits: int = 30) -> TangencyPoints:
     >>> points.kind, points.tau.round(6).tolist()
     (('foliation', 'gamma'), [0.633052, 2.508541])
     """
-    points = TangencyPoints(_points(oscillator))
+    points = TangencyPoints(_points(osc))
     points.digits = _checked(digits)
     return points
 

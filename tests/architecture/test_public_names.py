@@ -1,5 +1,7 @@
 """The public names: each resolves, appears in dir(), and a misspelt one is told the nearest."""
 
+import inspect
+
 import pytest
 
 import singimpact as si
@@ -28,6 +30,28 @@ def test_misspelt_name_is_told_the_nearest(wrong, right):
 
 def test_special_name_is_just_missing():
     assert not hasattr(si, "__wrapped__")
+
+
+def test_a_study_is_a_function_and_a_method_documented_once():
+    """Of models, and of periodic orbits."""
+    orbits = si.linear(2, "0.3", "0.5").periodic(1, 1)
+    firsts = {"osc": si.ImpactOscillator, "saddle": type(orbits[0])}
+    studies = {
+        name: inspect.signature(getattr(si, name)).parameters
+        for name in si.__all__
+        if inspect.isfunction(getattr(si, name))
+    }
+    found = {name: firsts[next(iter(takes))] for name, takes in studies.items() if next(iter(takes), "") in firsts}
+    assert len(found) >= 15
+    for name, kind in found.items():
+        assert getattr(kind, name).__doc__ == getattr(si, name).__doc__ != None, name  # noqa: E711
+    method, function = (
+        orbits[0].oscillator.lyapunov(0.3, 0.5, impacts=50),
+        si.lyapunov(orbits[0].oscillator, 0.3, 0.5, impacts=50),
+    )
+    assert (method.exponents == function.exponents).all()
+    with pytest.raises(si.InputError, match="osc = 3 is not accepted: give an ImpactOscillator"):
+        si.periodic(3, 1, 1)
 
 
 def test_type_checker_sees_the_same_names(clone):

@@ -36,8 +36,6 @@ def test_three_lines_draw_the_picture_beside_them(readme, clone, tmp_path, monke
     assert readme.index("basins.png") < readme.index("## ")  # before any heading
 
 
-
-
 def test_two_commands(readme):
     (block,) = re.findall(r"```sh\n(.*?)```", readme, re.DOTALL)
     assert block.splitlines() == [
