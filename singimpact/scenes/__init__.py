@@ -20,7 +20,7 @@ _FILES = {
     "drawing": "plot",
     "explore": "CURVES explore_page",
     "scene": "LAYERS LONGEST_TEXT Scene",
-    "stored_layers": "keep recall",
+    "layer_data": "keep recall",
     "style": "BLUE EVENT_PENS LINES MARKS ON_DARK PENS Pen VERMILLION on_dark orbit_color orbit_width",
 }
 __getattr__ = names_of(__name__, _FILES)

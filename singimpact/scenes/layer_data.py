@@ -6,18 +6,20 @@ The inputs of a need are needs too, so a further layer costs only what is new.
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import cached_property
+from pathlib import Path
 from time import perf_counter
 from typing import Any, Protocol
 
 import numpy as np
 
+from singimpact import cache
 from singimpact.dynamics.invariant_arcs import gammas_within, stable_manifold
 from singimpact.dynamics.orbit import orbit
 from singimpact.flights.flight_count import counted
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration
-from singimpact.scenes.stored_layers import keep, key_of, recall
-from singimpact.surface.curve import STATES, SURFACE, Curve, Window
+from singimpact.store import cache_folder
+from singimpact.surface.curve import STATES, SURFACE, Curve, Mark, Window
 from singimpact.surface.impact_surface import ImpactSurface, NamedLine
 
 STORED = ("lines", "visible", "shadow", "gamma", "stable-manifolds", "foliation", "orbits")  # the rest costs no flight
@@ -165,3 +167,38 @@ NEEDS: dict[str, tuple[Callable[[Results], list[Curve]], tuple[str, ...]]] = {
     "foliation": (_leaves, ()),
     "orbits": (_orbits, ()),
 }
+
+
+# Curves kept in the user's cache folder, under what they depend on; arrays alone, never pickled objects.
+
+LIBRARIES = ("numpy", "numba", "contourpy")
+ABOVE = ("paper/", "documents/", "scenes/", "bench/", "cli/")  # rooms that no curve depends on
+
+
+def key_of(*parts: Any) -> str:
+    """A digest of texts, of the source below the pictures and of the versions of what computes.
+
+    Examples
+    --------
+    >>> key_of("horizon", 1) == key_of("horizon", 1), len(key_of("horizon", 2))
+    (True, 64)
+    """
+    return cache.key_of(parts, LIBRARIES, ABOVE)
+
+
+def recall(key: str) -> list[Curve] | None:
+    """The curves under a key, or None when there are none or the file is damaged."""
+    content = cache.recall(_place(key))
+    if content is None:
+        return None
+    found: list[Curve] = cache.unpacked(content, (Curve, Mark))
+    return found
+
+
+def keep(key: str, curves: list[Curve]) -> None:
+    """Put curves on disk, with what is visible of them; a cache that cannot be written is no reason to fail."""
+    cache.keep(_place(key), cache.packed([replace(curve, first_hits=curve.visible) for curve in curves]))
+
+
+def _place(key: str) -> Path:
+    return cache_folder() / "curves" / f"{key}.curves"

@@ -7,7 +7,7 @@ from typing import Any
 from singimpact import cache
 from singimpact.inputs import checked_keywords, refuse
 from singimpact.paper.figures.panel import Dot, Line, Panel, Picture, Region
-from singimpact.scenes.stored_layers import key_of
+from singimpact.scenes.layer_data import key_of
 from singimpact.store import cache_folder
 
 FIGURES = tuple(range(1, 18))
