@@ -29,6 +29,7 @@ if TYPE_CHECKING:
         shaken_wall as shaken_wall,
         universal as universal,
     )
+    from singimpact.models import Models as _Models
     from singimpact.paper.claims import Claims as _Claims
     from singimpact.paper.claims.verdicts import verify as verify
     from singimpact.paper.figures import figure as figure
@@ -50,11 +51,13 @@ if TYPE_CHECKING:
     from singimpact.theory import fixed_points as fixed_points
 
     claims: _Claims
+    models: _Models
 
 __version__ = "0.1.0"
 
 _ROOMS = {
     "claims": "singimpact.paper.claims",
+    "models": "singimpact.models",
     "theory": "singimpact.theory",
     "fixed_points": "singimpact.theory.fixed_points",
 }

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from fractions import Fraction
 from functools import wraps
 from inspect import signature
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 from singimpact.algebra.numbers import as_float, as_fraction, constant
 from singimpact.impact_oscillator import ImpactOscillator
@@ -22,6 +22,9 @@ if TYPE_CHECKING:
     from singimpact.dynamics.bifurcation_diagram import Bifurcation
     from singimpact.surface.classification import Classification
     from singimpact.surface.curve import Curve
+
+P = ParamSpec("P")
+T = TypeVar("T")
 
 
 @checked_keywords
@@ -243,13 +246,14 @@ def grown_gamma(osc: Oscillator, window: Any = None, tau: Any = None) -> list[Cu
     return grown_gamma(osc, window, tau)
 
 
-def _of_models(method: Callable[..., Any]) -> Callable[..., Any]:
+def _of_models(method: Callable[P, T]) -> Callable[P, T]:
     """A method of the model as a function, whose first argument is checked; documented at the method."""
 
     @wraps(method)
-    def study(osc: Oscillator, *values: Any, **named: Any) -> Any:
+    def study(*values: P.args, **named: P.kwargs) -> T:
+        osc, *others = values or (named.pop("osc", None),)
         _require_model(osc)
-        return method(osc, *values, **named)
+        return method(osc, *others, **named)  # type: ignore[arg-type]
 
     takes = signature(method)
     first, *others = takes.parameters.values()

@@ -149,7 +149,7 @@ def branches(place: Path) -> None:
 
 
 def gallery(page: Path, place: Path) -> None:
-    """The pictures of the gallery, each by the lines that the page shows."""
+    """The pictures of the gallery and of named models, each by the lines that its page shows."""
     import re
 
     import singimpact as si
@@ -226,7 +226,8 @@ def build(app: Any) -> None:
     for name, page in pages.items():
         _put(place / name, page())
     branches(place)
-    gallery(Path(app.srcdir) / "gallery.md", place)
+    for page in (Path(app.srcdir) / "gallery.md", *sorted((Path(app.srcdir) / "models").glob("*.md"))):
+        gallery(page, place)
     manifolds(place)
     gamma_proved(place)
     border(place)

@@ -328,11 +328,20 @@ def latex(tree: Expression) -> str:
     """LaTeX of an expression of a model; x' has its dot."""
     import sympy
 
-    return str(sympy.latex(to_sympy(tree), symbol_names={sympy.Symbol("xdot"): r"\dot x"}))
+    found = sympy.sympify(to_sympy(tree))
+    return str(sympy.latex(found, symbol_names={each: latex_name(each.name) for each in found.free_symbols}))
 
 
 def latex_name(name: str) -> str:
-    """LaTeX of the name of a parameter."""
+    """LaTeX of the name of a parameter, a word upright; x' has its dot.
+
+    Examples
+    --------
+    >>> [latex_name(name) for name in ("omega", "mu_1", "damping", "A", "xdot")]
+    ['\\\\omega', '\\\\mu_{1}', '\\\\mathrm{damping}', 'A', '\\\\dot x']
+    """
     import sympy
 
-    return str(sympy.latex(sympy.Symbol(name)))
+    letters = str(sympy.latex(sympy.Symbol(name)))
+    word = letters.isalpha() and len(letters) > 1
+    return r"\dot x" if name == "xdot" else rf"\mathrm{{{letters}}}" if word else letters

@@ -72,7 +72,7 @@ def plot(thing: Any, ax: Any = None, *, height: str = "v", **style: object) -> A
 
 
 def _children(axes: Any) -> list[Any]:
-    """What stands on axes, or on several."""
+    """The artists on axes, or on several."""
     return [child for panel in np.ravel(axes) for child in panel.get_children()]
 
 

@@ -86,7 +86,9 @@ def test_a_name_that_is_near_none_is_told_where_the_names_are() -> None:
 
 def test_dir_is_what_one_can_do() -> None:
     assert all(not name.startswith("_") for name in [*dir(si), *dir(si.theory)])
-    assert all(callable(getattr(si, name)) or name in ("claims", "fixed_points", "theory") for name in dir(si))
+    assert all(
+        callable(getattr(si, name)) or name in ("claims", "fixed_points", "models", "theory") for name in dir(si)
+    )
     assert all(callable(getattr(si.theory, name)) for name in dir(si.theory))
 
 

@@ -278,8 +278,8 @@ class VerdictTable(Sequence["Verdict"]):
         paint : colours a verdict's name.
         """
         counts = "\n".join(wrapped("", self._summary(), width))
-        parts = [laid_out(self._rows(), width, paint), counts, self._misprints(width)]
-        return "\n\n".join(part for part in parts if part)
+        blocks = [laid_out(self._rows(), width, paint), counts, self._misprints(width)]
+        return "\n\n".join(filter(None, blocks))
 
     def __str__(self) -> str:
         import shutil
@@ -299,7 +299,7 @@ class VerdictTable(Sequence["Verdict"]):
         ]
 
     def screen(self, width: int | None = None) -> str:
-        """What `singimpact verify` prints of all claims: counts, what they rest on, errors, and a line a correction.
+        """All claims on one screen: counts, what they rest on, errors, and a line a correction.
 
         Parameters
         ----------
@@ -307,11 +307,11 @@ class VerdictTable(Sequence["Verdict"]):
         """
         wrong = [f"  {verdict.id}  {verdict.evidence}" for verdict in self if verdict.kind == ERROR]
         lines = [self._summary(), self._rests_on(), *(["", "In error:", *wrong] if wrong else [])]
-        found = [verdict for verdict in self if verdict.kind == CORRECTED]
-        if found:
-            ids = max(len(verdict.id) for verdict in found)
-            lines += ["", f"Misprinted, {len(found)} (`singimpact errata` gives the reasons):"]
-            lines += [f"  {verdict.id:{ids}}  {_correction(verdict)}" for verdict in found]
+        misprints = [verdict for verdict in self if verdict.kind == CORRECTED]
+        if misprints:
+            ids = max(len(verdict.id) for verdict in misprints)
+            lines += ["", f"Misprinted, {len(misprints)} (`singimpact errata` gives the reasons):"]
+            lines += [f"  {verdict.id:{ids}}  {_correction(verdict)}" for verdict in misprints]
         return "\n".join(line if width is None or len(line) <= width else f"{line[: width - 1]}…" for line in lines)
 
     def html(self) -> str:
