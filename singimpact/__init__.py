@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from singimpact.paper.sections.errata import errata as errata
     from singimpact.scenes import Scene as Scene, plot as plot
     from singimpact.scenes.explore import explore as explore
+    from singimpact.scenes.orbit_picture import animate as animate
     from singimpact.studies import (
         basins as basins,
         bifurcation as bifurcation,
@@ -80,6 +81,7 @@ _FILES = {
     "paper.sections.errata": "errata",
     "scenes": "Scene plot",
     "scenes.explore": "explore",
+    "scenes.orbit_picture": "animate",
     "studies": "basins bifurcation certified_gamma chatter_limit classify grown_gamma orbit periodic swan_points",
     "surface.impact_surface": "ImpactSurface",
 }

@@ -8,7 +8,7 @@ from importlib import import_module
 from types import MethodType
 from typing import Any
 
-__all__ = ["Study", "names_of"]
+__all__ = ["Study", "names_of", "public"]
 
 
 def names_of(room: str, files: Mapping[str, str]) -> Callable[[str], Any]:
@@ -26,6 +26,15 @@ def names_of(room: str, files: Mapping[str, str]) -> Callable[[str], Any]:
     return value_of
 
 
+Function = Callable[..., Any]
+
+
+def public(name: str) -> Function:
+    """The function of `singimpact` of a name."""
+    function: Function = getattr(import_module("singimpact"), name)
+    return function
+
+
 class Study:
     """A function of `singimpact` as a method: `osc.basins(...)` is `si.basins(osc, ...)`, and has its documentation.
 
@@ -39,6 +48,5 @@ class Study:
     def __set_name__(self, owner: type, name: str) -> None:
         self.name = name
 
-    def __get__(self, thing: object, kind: type) -> Callable[..., Any]:
-        function: Callable[..., Any] = getattr(import_module("singimpact"), self.name)
-        return function if thing is None else MethodType(function, thing)
+    def __get__(self, thing: object, kind: type) -> Function:
+        return public(self.name) if thing is None else MethodType(public(self.name), thing)

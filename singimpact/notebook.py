@@ -1,9 +1,14 @@
 """Results in a notebook: tables as HTML, and a line of progress that is rewritten in its cell."""
 
 import sys
+from base64 import b64encode
 from collections.abc import Iterable, Sequence
 from html import escape
+from io import BytesIO
 from typing import Any
+
+from singimpact.handed_on import public
+from singimpact.inputs import InputError
 
 MOST_ROWS = 20
 
@@ -33,6 +38,37 @@ def table(header: Sequence[str], rows: Sequence[Sequence[Any]], caption: str = "
         shown.append(f'<tr><td colspan="{len(header)}">and {len(rows) - most} more</td></tr>')
     above = f"<caption>{escape(caption)}</caption>" if caption else ""
     return f"<table>{above}{_row('th', header) if header else ''}{''.join(shown)}</table>"
+
+
+def box(thing: object, more: str) -> str:
+    """A result in a notebook: its words, its model, a small picture where `si.plot` draws one, and what is folded up.
+
+    Parameters
+    ----------
+    more : HTML that a click opens.
+    """
+    latex = getattr(getattr(thing, "oscillator", getattr(thing, "model", None)), "_repr_latex_", None)
+    equation = f"<div>{latex()}</div>" if latex else ""
+    kind = type(thing)
+    where = f"<small>help: <code>help({kind.__module__}.{kind.__qualname__})</code></small>"
+    folded = f"<details><summary>numbers</summary>{more}</details>"
+    return f"<div><pre>{escape(str(thing))}</pre>{equation}{_picture(thing)}{folded}{where}</div>"
+
+
+def _picture(thing: object) -> str:
+    """The thing as `si.plot` draws it, small; "" where it draws nothing."""
+    import numpy as np
+
+    try:
+        figure = np.ravel(public("plot")(thing))[0].figure
+    except InputError:
+        return ""
+    from matplotlib import pyplot
+
+    stream = BytesIO()
+    figure.savefig(stream, format="png", dpi=60)
+    pyplot.close(figure)  # or the notebook shows it again
+    return f'<img alt="picture" src="data:image/png;base64,{b64encode(stream.getvalue()).decode()}">'
 
 
 def _row(cell: str, texts: Iterable[Any]) -> str:

@@ -8,7 +8,7 @@ from typing import Any, ClassVar, cast
 import numpy as np
 
 from singimpact.inputs import InputError
-from singimpact.notebook import table as html_table
+from singimpact.notebook import box, table as html_table
 from singimpact.status import Cause, Status
 from singimpact.store import write_table, written
 
@@ -178,7 +178,7 @@ class Result:
     def _repr_html_(self) -> str:
         columns = self.table()
         rows = [[shown(cell) for cell in row] for row in zip(*columns.values(), strict=True)]
-        return html_table(list(columns), rows, f"{type(self).__name__} of {len(rows)}")
+        return box(self, html_table(list(columns), rows, f"{type(self).__name__} of {len(rows)}"))
 
 
 class Results(Result):

@@ -249,15 +249,17 @@ def grown_gamma(osc: Oscillator, window: Any = None, tau: Any = None) -> list[Cu
 def _of_models(method: Callable[P, T]) -> Callable[P, T]:
     """A method of the model as a function, whose first argument is checked; documented at the method."""
 
-    @wraps(method)
-    def study(*values: P.args, **named: P.kwargs) -> T:
-        osc, *others = values or (named.pop("osc", None),)
-        _require_model(osc)
-        return method(osc, *others, **named)  # type: ignore[arg-type]
-
     takes = signature(method)
     first, *others = takes.parameters.values()
-    study.__signature__ = takes.replace(parameters=[first.replace(name="osc"), *others])  # type: ignore[attr-defined]
+    takes = takes.replace(parameters=[first.replace(name="osc"), *others])
+
+    @wraps(method)
+    def study(*values: P.args, **named: P.kwargs) -> T:
+        bound = takes.bind(*values, **named)
+        _require_model(bound.arguments["osc"])
+        return method(*bound.args, **bound.kwargs)
+
+    study.__signature__ = takes  # type: ignore[attr-defined]
     return checked_keywords(study)
 
 

@@ -152,13 +152,15 @@ def gallery(page: Path, place: Path) -> None:
     """The pictures of the gallery and of named models, each by the lines that its page shows."""
     import re
 
+    import numpy as np
+
     import singimpact as si
 
     for text in re.findall(r"```python\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL):
         space: dict[str, Any] = {"si": si}
         name = text.partition("\n")[0].removeprefix("# picture: ")
         exec(compile(text, f"gallery: {name}", "exec"), space)
-        figure = space["figure"] if "figure" in space else space["axes"].figure
+        figure = np.ravel(space["axes"])[0].figure
         figure.savefig(place / f"gallery_{name}.png", dpi=110)
 
 

@@ -1,8 +1,10 @@
 """Pictures of branches of periodic orbits, of their events in two numbers, and of bifurcation diagrams below them."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -26,6 +28,9 @@ from singimpact.scenes.style import (
     orbit_color,
     orbit_width,
 )
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 HEIGHTS = {"v": "velocity $v$ after an impact", "phase": "phase of an impact, in periods", "x": "lowest $x - c$"}
 WORDS = {"stable": "stable", "unstable": "unstable", "virtual": "virtual: goes through the wall"}
@@ -301,8 +306,8 @@ SPREAD = 60_000.0
 """Impacts per square inch of area of their dots: few get large dots, many small ones."""
 
 
-def bifurcation_sheet(diagram: Bifurcation, branches: Sequence[Branch] = ()) -> Any:
-    """The figure of a diagram: velocities above, phases below, and branches over both.
+def bifurcation_sheet(diagram: Bifurcation, branches: Sequence[Branch] = (), figure: Figure | None = None) -> Figure:
+    """The figure of a diagram, a new one or an empty one: velocities above, phases below, branches over both.
 
     Parameters
     ----------
@@ -318,7 +323,7 @@ def bifurcation_sheet(diagram: Bifurcation, branches: Sequence[Branch] = ()) -> 
     """
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=SIZE, dpi=150, layout="constrained")
+    figure = figure or Figure(figsize=SIZE, dpi=150, layout="constrained")
     above, below = figure.subplots(2, 1, sharex=True)
     for axes, height in ((below, "phase"), (above, "v")):
         draw_bifurcation(diagram, axes, height)

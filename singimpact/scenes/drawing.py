@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.numbers import Array
 from singimpact.branches.border import BorderOrbit
 from singimpact.branches.branch import Branch
 from singimpact.branches.enclosed_crossing import EnclosedCrossing
@@ -13,6 +14,7 @@ from singimpact.branches.event_curve import EventCurve
 from singimpact.branches.homoclinic import Crossings
 from singimpact.branches.horseshoe import Horseshoe
 from singimpact.branches.manifold import Manifold
+from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.transitions import BothSides
 from singimpact.dynamics.basins_of_attraction import Basins
 from singimpact.dynamics.bifurcation_diagram import Bifurcation
@@ -21,9 +23,14 @@ from singimpact.dynamics.sampling import Section
 from singimpact.inputs import InputError, checked_keywords, refuse
 from singimpact.scenes.basins_picture import draw_basins, draw_both_sides
 from singimpact.scenes.border_picture import draw_border
-from singimpact.scenes.branch_picture import draw_bifurcation, draw_branches, draw_event_curves
+from singimpact.scenes.branch_picture import (
+    bifurcation_sheet,
+    draw_bifurcation,
+    draw_branches,
+    draw_event_curves,
+)
 from singimpact.scenes.manifolds import draw_certified_crossing, draw_crossings, draw_horseshoe, draw_manifolds
-from singimpact.scenes.orbit_picture import draw_orbit, draw_section
+from singimpact.scenes.orbit_picture import SIZE as SHEET, draw_orbit, draw_periodic, draw_section, orbit_sheet
 from singimpact.scenes.scene import Scene
 from singimpact.scenes.style import PENS
 from singimpact.surface.curve import Curve
@@ -34,20 +41,23 @@ LETTERS = {"tau": r"time $\tau$", "t": "flight time $t$", "v": "velocity $v$"}
 
 
 @checked_keywords
-def plot(thing: Any, ax: Any = None, *, height: str = "v", **style: object) -> Any:
+def plot(thing: Any, ax: Any = None, *, height: str = "v", sheet: bool = False, **style: object) -> Any:
     """Draw a thing and return the matplotlib axes.
 
     Parameters
     ----------
-    thing : an orbit, a section of one, a scene, basins, a bifurcation diagram, a branch or an event curve or a list of
-        them, W^s or W^u of a saddle or a list of them, the points where two cross, a certified orbit in which they do,
-        a certified horseshoe, a border orbit, of which the cascade is drawn, both sides of a transition (on two axes),
-        a curve or a list of curves of one plane, or an impact surface, of which Z and H are drawn.
+    thing : an orbit, a periodic orbit with impacts, a section of an orbit, a scene, basins, a bifurcation diagram, a
+        branch or an event curve or a list of them, W^s or W^u of a saddle or a list of them, the points where two
+        cross, a certified orbit in which they do, a certified horseshoe, a border orbit, of which the cascade is drawn,
+        both sides of a transition (on two axes), a curve or a list of curves of one plane, or an impact surface, of
+        which Z and H are drawn.
     ax : where to draw; those of a new figure of pyplot when it is not given, so that a notebook shows it and
         `matplotlib.pyplot.show()` does. Branches drawn on the axes of a bifurcation diagram keep its limits, and so do
         manifolds on those of basins, and a certified orbit on those of manifolds.
     height : of branches and bifurcation diagrams: "v", velocities after the impacts, or "phase", their phases in
         periods. A branch of orbits without impact alone is shown by its lowest x - c, beside others at v = 0.
+    sheet : whether a figure of several axes is made, which are returned: of an orbit its last part, the phase portrait
+        and all velocities; of a diagram, or a list of one and of branches, velocities and phases.
     style : properties of matplotlib for all lines and points that are drawn, such as color, linewidth or alpha.
 
     Examples
@@ -61,7 +71,7 @@ def plot(thing: Any, ax: Any = None, *, height: str = "v", **style: object) -> A
         warnings.warn("plot(axes=...) is plot(ax=...) now", FutureWarning, stacklevel=3)
         ax = style.pop("axes")
     before = [] if ax is None else _children(ax)
-    axes = _drawn(thing, ax, height)
+    axes = _sheet(thing) if sheet else _drawn(thing, ax, height)
     if style:
         from matplotlib.collections import Collection
         from matplotlib.lines import Line2D
@@ -69,6 +79,20 @@ def plot(thing: Any, ax: Any = None, *, height: str = "v", **style: object) -> A
         drawn = [child for child in _children(axes) if child not in before]
         _styled([child for child in drawn if isinstance(child, Line2D | Collection)], style)
     return axes
+
+
+def _sheet(thing: Any) -> Array:
+    """The axes of a figure of pyplot that shows an orbit or a diagram from several sides."""
+    import matplotlib.pyplot
+
+    diagram, *branches = thing if isinstance(thing, list | tuple) else [thing]
+    if isinstance(diagram, Orbit):
+        figure = matplotlib.pyplot.figure(figsize=SHEET, dpi=150, layout="constrained")
+        return np.array(orbit_sheet(diagram, figure=figure).axes, dtype=object)
+    if not isinstance(diagram, Bifurcation):
+        raise refuse("thing to plot as a sheet", type(diagram).__name__, "an orbit, or a diagram and branches over it")
+    figure = matplotlib.pyplot.figure(figsize=HIGH, dpi=150, layout="constrained")
+    return np.array(bifurcation_sheet(diagram, branches, figure).axes, dtype=object)
 
 
 def _children(axes: Any) -> list[Any]:
@@ -167,6 +191,7 @@ ALONE: tuple[tuple[type, tuple[float, float], Drawer], ...] = (
     (EnclosedCrossing, HIGH, draw_certified_crossing),
     (Horseshoe, WIDE, draw_horseshoe),
     (Orbit, WIDE, draw_orbit),
+    (PeriodicOrbit, WIDE, draw_periodic),
     (Section, HIGH, draw_section),
     (Basins, HIGH, draw_basins),
 )

@@ -1,14 +1,29 @@
 """x(t) of an orbit: flights, impacts, rest on the obstacle, chatter that was summed up; and a sheet of three panels."""
 
+from __future__ import annotations
+
+from base64 import b64encode
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
+from io import BytesIO
+from pathlib import Path as FilePath
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from singimpact.algebra.numbers import as_float
-from singimpact.dynamics.orbit import Orbit
+from singimpact.branches.orbits import PeriodicOrbit
+from singimpact.dynamics.orbit import Orbit, orbit as flown
 from singimpact.dynamics.sampling import Section
 from singimpact.flights.flight_path import path
+from singimpact.inputs import InputError, checked_keywords, refuse, whole
+from singimpact.store import written
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from PIL import Image
 
 
 @dataclass(frozen=True)
@@ -50,6 +65,15 @@ def draw_orbit(orbit: Orbit, axes: Any, style: OrbitStyle = STYLE, since: float 
     axes.set_ylim(clearance - 0.12 * (high - clearance), high)
     axes.axhspan(axes.get_ylim()[0], clearance, facecolor="0.92", hatch="////", edgecolor="0.75", linewidth=0, zorder=0)
     axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False, fontsize="small")
+    return axes
+
+
+def draw_periodic(orbit: PeriodicOrbit, axes: Axes) -> Axes:
+    """Draw x(t) of a periodic orbit from its first impact on, over its k periods."""
+    if orbit.kind == "free" or not orbit.visible:
+        raise refuse("orbit to plot", orbit, "a periodic orbit with impacts that is visible")
+    impacts = IMPACTS if orbit.kind == "chatter" else int(orbit.n)
+    draw_orbit(flown(orbit.oscillator, orbit.tau[0], orbit.v[0], impacts), axes)
     return axes
 
 
@@ -145,8 +169,8 @@ LEAST = 1e-12
 """Velocities below this part of the largest one are drawn there."""
 
 
-def orbit_sheet(orbit: Orbit, style: OrbitStyle = STYLE) -> Any:
-    """The figure of an orbit with its three panels.
+def orbit_sheet(orbit: Orbit, style: OrbitStyle = STYLE, figure: Figure | None = None) -> Figure:
+    """The figure of an orbit with its three panels, a new one or an empty one that is given.
 
     Examples
     --------
@@ -157,7 +181,7 @@ def orbit_sheet(orbit: Orbit, style: OrbitStyle = STYLE) -> Any:
     """
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=SIZE, dpi=150, layout="constrained")
+    figure = figure or Figure(figsize=SIZE, dpi=150, layout="constrained")
     grid = figure.add_gridspec(2, 2, width_ratios=(2.0, 1.0))
     since = _since(orbit)
     motion = draw_orbit(orbit, figure.add_subplot(grid[0, 0]), style, since)
@@ -242,3 +266,121 @@ def _velocities(orbit: Orbit, axes: Any, style: OrbitStyle, since: float | None)
     axes.set(xlabel="time $t$", ylabel="velocity $v$ after an impact", xlim=(orbit.tau[0], end))
     axes.set_title("all impacts", fontsize="medium")
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=3, frameon=False, fontsize="small")
+
+
+# The mass that bounces, beside its x(t).
+
+BLOCK = ((-1, 0), (1, 0), (1, 2), (-1, 2), (-1, 0))
+"""The marker of the mass, which stands on its place."""
+
+
+@dataclass(frozen=True, eq=False)
+class OrbitAnimation:
+    """The moving mass of an orbit; a notebook plays it.
+
+    Parameters
+    ----------
+    figure : without what moves. show : puts what moves to its place in a picture, by number, and returns it.
+    frames : pictures. rate : of them a second.
+    """
+
+    figure: Any
+    show: Callable[[int], Sequence[Any]]
+    frames: int
+    rate: int = 30
+
+    def save(self, path: str | FilePath) -> None:
+        """Write it to a .gif, an .html page that plays without a network, or an .mp4, which needs ffmpeg.
+
+        Raises
+        ------
+        InputError : another ending, or ffmpeg is not there.
+        """
+        ending = FilePath(path).suffix.lower()
+        if ending not in (".gif", ".html", ".mp4"):
+            raise refuse("path", path, "a file name ending in .gif, .html or .mp4")
+        content = self._mp4(path) if ending == ".mp4" else self._gif()
+        if ending == ".html":
+            content = f"<!DOCTYPE html><meta charset='utf-8'>{self._repr_html_()}".encode()
+        with written(path) as draft:
+            draft.write_bytes(content)
+
+    def _repr_html_(self) -> str:
+        return f'<img alt="an orbit, moving" src="data:image/gif;base64,{b64encode(self._gif()).decode()}">'
+
+    def _pictures(self) -> Iterator[Image.Image]:
+        """The pictures; what does not move is drawn once."""
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from PIL import Image
+
+        canvas: Any = FigureCanvasAgg(self.figure)
+        for artist in self.show(0):
+            artist.set_animated(True)
+        canvas.draw()
+        still = canvas.copy_from_bbox(self.figure.bbox)
+        for at in range(self.frames):
+            canvas.restore_region(still)
+            for artist in self.show(at):
+                artist.axes.draw_artist(artist)
+            picture = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
+            yield picture.quantize(32, dither=Image.Dither.NONE)
+
+    def _gif(self) -> bytes:
+        first, *others = self._pictures()
+        stream = BytesIO()
+        pace = round(1000 / self.rate, -1)  # a GIF counts hundredths of a second
+        first.save(stream, "GIF", save_all=True, append_images=others, duration=pace, loop=0)
+        return stream.getvalue()
+
+    def _mp4(self, path: str | FilePath) -> bytes:
+        from matplotlib.animation import FFMpegWriter, FuncAnimation
+
+        if not FFMpegWriter.isAvailable():
+            raise InputError(f"{path} needs the program ffmpeg, which is not found: install it, or give .gif or .html")
+        with TemporaryDirectory() as place:
+            film = FuncAnimation(self.figure, self.show, frames=self.frames)
+            film.save(FilePath(place) / "film.mp4", writer=FFMpegWriter(fps=self.rate))
+            return (FilePath(place) / "film.mp4").read_bytes()
+
+
+@checked_keywords
+def animate(orbit: Orbit, between: tuple[float, float] | None = None, frames: int = 300) -> OrbitAnimation:
+    """The bouncing mass of an orbit beside its x(t).
+
+    Parameters
+    ----------
+    orbit : of `osc.orbit`. between : times of the first and the last picture; without it the last six periods, or the
+        last impacts where the forcing has none. frames : pictures, from 2 to 10000, thirty a second.
+
+    Examples
+    --------
+    >>> from singimpact.impact_oscillator import linear
+    >>> animate(linear(2, "0.3", "0.5").orbit("1.2", "0.3", impacts=60), frames=30).save("bounce.gif")  # doctest: +SKIP
+    """
+    from matplotlib.figure import Figure
+
+    if not isinstance(orbit, Orbit):
+        raise refuse("orbit", type(orbit).__name__, "an orbit of `osc.orbit`")
+    count = whole("frames", frames, 2, 10_000)
+    begin, end = (_since(orbit), shown_end(orbit, STYLE)) if between is None else between
+    if not float(orbit.tau[0]) <= begin < end <= max(shown_end(orbit, STYLE), orbit.end):
+        raise refuse("between", between, f"two times from {orbit.tau[0]:.6g} to {shown_end(orbit, STYLE):.6g}")
+    times = np.linspace(begin, end, count)
+    heights, wall = orbit.sample(times).x, as_float(orbit.oscillator.clearance)
+    figure = Figure(figsize=(7.2, 3.2), dpi=80, layout="constrained")
+    still, moving = figure.subplots(1, 2, sharey=True, width_ratios=(1, 4))
+    draw_orbit(orbit, moving, since=begin).get_legend().remove()
+    moving.set(xlim=(begin, end), ylabel="")
+    for line in moving.lines:
+        line.set_clip_on(True)  # marks of impacts that are not among the pictures
+    still.set(xlim=(-1, 1), xticks=[], ylabel="displacement $x$")
+    still.axhspan(still.get_ylim()[0], wall, facecolor="0.92", hatch="////", edgecolor="0.75", linewidth=0)
+    (mass,) = still.plot([0], [heights[0]], marker=BLOCK, color=STYLE.flight, markersize=32)
+    (point,) = moving.plot([begin], [heights[0]], "o", color=STYLE.rest, markersize=6, zorder=6)
+
+    def show(at: int) -> tuple[Any, Any]:
+        mass.set_ydata([heights[at]])
+        point.set_data([times[at]], [heights[at]])
+        return mass, point
+
+    return OrbitAnimation(figure, show, count)

@@ -39,6 +39,39 @@ def test_a_scene_is_a_picture():
     assert scene._repr_png_().startswith(b"\x89PNG")
 
 
+def results():
+    """Results, and whether a picture of them can be drawn."""
+    osc = si.linear("2.8", "0.1", "0.8", amplitude=-1)
+    orbit, closed = osc.orbit("0.3", "0.4", impacts=9), osc.periodic(1, 1)
+    branch = closed[0].branch("clearance", (0, "0.2"))
+    drawn = [orbit, orbit.section(), closed[0], osc.basins(size=8), osc.bifurcation("clearance", (0, "0.2"), points=3)]
+    drawn += [branch, next(each for each in osc.periodic(3, 3) if not each.stable).manifold(v=1, length=1)]
+    words = [
+        closed,
+        osc.tangency_points(),
+        branch.events[0],
+        osc.lyapunov(0.3, 0.4, impacts=50),
+        osc.chatter_limit(0.3, 0.01),
+    ]
+    words += [osc.impact_map(0.3, [0.1, 0.2]), osc.classify(), si.linear(2, "0.3", "0.5").threshold("2.4")]
+    return [(each, True) for each in drawn] + [(each, False) for each in words]
+
+
+def test_results_draw_themselves():
+    from matplotlib import pyplot
+
+    pyplot.close("all")
+    for result, drawn in results():
+        html = result._repr_html_()
+        name = type(result).__name__
+        assert html.count("<img ") == drawn, name
+        assert notebook.escape(str(result)) in html, name
+        assert "<table>" in html
+        assert f".{name})</code>" in html
+    assert r"$\ddot x + x = " in results()[0][0]._repr_html_()
+    assert pyplot.get_fignums() == []  # or the notebook shows them twice
+
+
 def test_statuses_say_what_they_mean():
     step = si.linear(2, "0.3", "0.5").impact_map(1.2, [0.0, 0.01, 0.02])
     assert isinstance(step.status, StatusArray)
