@@ -1,102 +1,33 @@
 """An impact oscillator near a degenerate graze: theory that is executable, exact and checkable.
 
-Everything public is reached from here; a name loads its room when it is first used.
+Everything public is reached from here; a name loads its room when it is first used. `__init__.pyi` has the list.
 """
 
-from typing import TYPE_CHECKING, Any
-
-from singimpact.inputs import InputError as InputError
-from singimpact.status import Cause as Cause, Status as Status
-
-if TYPE_CHECKING:
-    from singimpact import theory as theory
-    from singimpact.bench.selftest.run import selftest as selftest
-    from singimpact.branches.border import border_orbits as border_orbits
-    from singimpact.branches.branch import branch as branch
-    from singimpact.branches.event_curve import event_curve as event_curve
-    from singimpact.branches.homoclinic import homoclinic_points as homoclinic_points
-    from singimpact.branches.manifold import manifold as manifold
-    from singimpact.branches.transitions import transitions as transitions
-    from singimpact.cases import sweep as sweep
-    from singimpact.certificates.certificate import certify as certify, read_certificate as read_certificate
-    from singimpact.contact.points import tangency_points as tangency_points
-    from singimpact.dynamics.lyapunov import lyapunov as lyapunov
-    from singimpact.dynamics.threshold import threshold as threshold
-    from singimpact.impact_oscillator import (
-        ImpactOscillator as ImpactOscillator,
-        linear as linear,
-        read_model as read_model,
-        shaken_wall as shaken_wall,
-        universal as universal,
-    )
-    from singimpact.models import Models as _Models
-    from singimpact.paper.claims import Claims as _Claims
-    from singimpact.paper.claims.verdicts import verify as verify
-    from singimpact.paper.figures import figure as figure
-    from singimpact.paper.sections.errata import errata as errata
-    from singimpact.scenes import Scene as Scene, plot as plot
-    from singimpact.scenes.explore import explore as explore
-    from singimpact.scenes.orbit_picture import animate as animate
-    from singimpact.studies import (
-        basins as basins,
-        bifurcation as bifurcation,
-        certified_gamma as certified_gamma,
-        chatter_limit as chatter_limit,
-        classify as classify,
-        grown_gamma as grown_gamma,
-        orbit as orbit,
-        periodic as periodic,
-        swan_points as swan_points,
-    )
-    from singimpact.surface.impact_surface import ImpactSurface as ImpactSurface
-    from singimpact.theory import fixed_points as fixed_points
-
-    claims: _Claims
-    models: _Models
+import re
+from importlib import import_module
+from pathlib import Path
+from typing import Any
 
 __version__ = "0.1.0"
 
-_ROOMS = {
-    "claims": "singimpact.paper.claims",
-    "models": "singimpact.models",
-    "theory": "singimpact.theory",
-    "fixed_points": "singimpact.theory.fixed_points",
+_LISTED = re.compile(r"^from (\S+) import (?:\(([^)]*)\)|(.*))$", re.MULTILINE)
+_HOMES = {
+    name: home
+    for home, *lists in _LISTED.findall(Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8"))
+    for name in re.findall(r"\b(\w+) as \1\b", " ".join(lists))
 }
-_FILES = {
-    "bench.selftest.run": "selftest",
-    "branches.border": "border_orbits",
-    "branches.branch": "branch",
-    "branches.event_curve": "event_curve",
-    "branches.homoclinic": "homoclinic_points",
-    "branches.manifold": "manifold",
-    "branches.transitions": "transitions",
-    "cases": "sweep",
-    "certificates.certificate": "certify read_certificate",
-    "contact.points": "tangency_points",
-    "dynamics.lyapunov": "lyapunov",
-    "dynamics.threshold": "threshold",
-    "impact_oscillator": "ImpactOscillator linear read_model shaken_wall universal",
-    "paper.claims.verdicts": "verify",
-    "paper.figures": "figure",
-    "paper.sections.errata": "errata",
-    "scenes": "Scene plot",
-    "scenes.explore": "explore",
-    "scenes.orbit_picture": "animate",
-    "studies": "basins bifurcation certified_gamma chatter_limit classify grown_gamma orbit periodic swan_points",
-    "surface.impact_surface": "ImpactSurface",
-}
-_HOMES = {name: f"singimpact.{file}" for file, names in _FILES.items() for name in names.split()}
-__all__ = sorted(["Cause", "InputError", "Status", *_ROOMS, *_HOMES])
+"""Public name -> the module that has it."""
+_ROOMS = {"claims": "singimpact.paper.claims", "models": "singimpact.models", "theory": "singimpact.theory"}
+"""Modules that are used like a collection."""
+__all__ = sorted({*_ROOMS, *_HOMES})
 
 
 def __getattr__(name: str) -> Any:
-    from importlib import import_module
-
     if name in _ROOMS:
         return import_module(_ROOMS[name])
     if name in _HOMES:
-        found = globals()[name] = getattr(import_module(_HOMES[name]), name)
-        return found
+        value = globals()[name] = getattr(__import__(_HOMES[name], fromlist=[name]), name)
+        return value
     raise AttributeError(_no_such(name))
 
 
