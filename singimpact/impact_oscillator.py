@@ -361,7 +361,7 @@ class ImpactOscillator(Oscillator):
         """
         from singimpact.dynamics.orbit import dropped_orbit, orbit
 
-        if x is xdot is t is None:
+        if x is xdot is t is None and tau is not None:
             return orbit(self, tau, v, impacts, horizon=horizon)
         if tau is not None or v is not None or x is None or xdot is None or t is None:
             raise InputError(

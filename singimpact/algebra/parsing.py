@@ -205,6 +205,8 @@ class _Parser:
         if not self.token:
             return "it ends too early"
         kind, before = self.before
+        if self.token in ("deg", "degree", "degrees"):
+            return f"angles are in radians: write {shown(before)[1:-1]}*pi/180"
         if (kind in ("number", "name") or before == ")") and (self.kind in ("number", "name") or self.token == "("):
             return f"a product is written with its *, {shown(f'{before}*{self.token}')[1:-1]}"
         return f"{shown(self.token)} is out of place"

@@ -93,7 +93,7 @@ def _show(page: str, file: str | None) -> None:
     shown = Path(tempfile.mkdtemp(prefix="singimpact-")) / "explore.html"
     write_text(shown, page)
     if not webbrowser.open(shown.as_uri()):
-        raise click.ClickException(f"no browser opens here: the page is in {shown}; --html FILE puts it elsewhere")
+        click.echo(f"no browser opens here: the page is in {shown}; --html FILE puts it elsewhere", err=True)
 
 
 def _told(film: ClearanceFilm) -> dict[str, Any]:

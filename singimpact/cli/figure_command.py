@@ -75,6 +75,8 @@ def _data(number: int | str) -> Any:
 
 def _targets(output: str, numbers: list[int | str], kind: str) -> list[Path]:
     """Where each figure goes; the folder is there."""
+    if Path(output).suffix and Path(output).suffix.lower() not in PICTURES and not Path(output).is_dir():
+        raise refuse("output", output, "a folder, or for one figure a file name ending in .png, .pdf or .svg")
     if Path(output).suffix.lower() not in PICTURES:
         return [folder(output) / f"figure{str(number).zfill(2)}.{kind}" for number in numbers]
     if len(numbers) > 1:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import pairwise
@@ -22,7 +23,7 @@ from singimpact.flights.off_wall import Launched, launch
 from singimpact.flights.orbits import orbit_segment
 from singimpact.flights.results import Step
 from singimpact.flights.states import States
-from singimpact.inputs import InputError, refuse, whole
+from singimpact.inputs import InputError, refuse, shown, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.result import Result
 from singimpact.status import Status
@@ -95,6 +96,9 @@ class Orbit(Result):
         """
         times = float_array("t", t)
         flat = times.ravel()
+        if flat.size and not ((flat >= self.tau[0]) & (flat <= self.end)).any():
+            told = f"t = {shown(t)}: the orbit is known from {self.tau[0]:.6g} to {self.end:.6g}; x and xdot are nan"
+            warnings.warn(told, stacklevel=3)
         order = np.argsort(flat, kind="stable")
         out = np.full((flat.size, 2), np.nan)
         events = self.tau, self.v, self.kind

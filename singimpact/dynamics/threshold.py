@@ -62,6 +62,12 @@ class Search:
 
 SEARCH = Search()
 
+NOTES = {
+    int(Status.none): "a_c has no zero ahead into which gamma runs, so that a chatter here comes to rest",
+    int(Status.unresolved): "the next zero of a_c, its order, or the two sides of gamma are not decided",
+}
+"""Status -> why a threshold has no velocity."""
+
 
 @dataclass(frozen=True, repr=False)
 class Threshold(Result):
@@ -77,7 +83,13 @@ class Threshold(Result):
     status: Any
     certified: Any = None
 
-    __repr__ = in_words
+    @property
+    def note(self) -> str:
+        """Why there is no velocity; "" where there is one, and for an array."""
+        return NOTES.get(int(self.status), "") if np.ndim(self.status) == 0 else ""
+
+    def __repr__(self) -> str:
+        return f"{in_words(self)}{f': {self.note}' if self.note else ''}"
 
 
 @checked_keywords

@@ -6,13 +6,14 @@ index alone.
 """
 
 import json
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from functools import cache
 from html import escape
 from pathlib import Path
 
-from singimpact.inputs import unknown
+from singimpact.inputs import InputError, unknown
 from singimpact.paper.claims import beyond
 from singimpact.paper.claims.claim import Claim
 from singimpact.paper.claims.sections import SECTIONS
@@ -56,8 +57,18 @@ def entry_of(name: str) -> Entry:
     InputError : an unknown id; the nearest known ones are named.
     """
     if name not in INDEX and name not in BEYOND:
+        number = re.fullmatch(r"(?:eq(?:uation)?\.?)? *\(?(\d+)\)?", str(name))
+        if number:
+            held = ", ".join(_of_equation(int(number[1]))) or "none; si.claims lists all"
+            raise InputError(f"claims have ids, not numbers: about equation ({number[1]}) of the paper there is {held}")
         raise unknown("claim", name, [*INDEX, *BEYOND])
     return INDEX[name] if name in INDEX else BEYOND[name]
+
+
+def _of_equation(number: int) -> list[str]:
+    """The claims about a numbered equation of the paper."""
+    places = json.loads((Path(__file__).parents[1] / "sections" / "places.json").read_text(encoding="utf-8"))
+    return [place["id"] for place in places if number in place["equations"]]
 
 
 def entries_of(file: str) -> tuple[Entry, ...]:
