@@ -1,4 +1,4 @@
-"""An impact oscillator near a degenerate graze: theory that is executable, exact and checkable.
+"""Impact oscillators x'' + f(x, x') = g(t), x >= c: simulation, periodic orbits, and exact theory near grazes.
 
 Everything public is reached from here; a name loads its room when it is first used. `__init__.pyi` has the list.
 """

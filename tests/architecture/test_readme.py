@@ -10,6 +10,7 @@ import tomllib
 import matplotlib.image as mpimg
 import pytest
 
+import singimpact
 from singimpact.bench import COMMANDS as commands_COMMANDS
 from singimpact.cli import COMMANDS
 
@@ -42,6 +43,17 @@ def test_two_commands(readme):
         "python -m pip install . && singimpact verify",
         "python -m pip install '.[test]' && python -m pytest",
     ]
+
+
+def test_one_sentence_says_what_it_is(clone):
+    """In the metadata, the package and the command."""
+    project = tomllib.loads((clone / "pyproject.toml").read_text())["project"]
+    told = subprocess.run([sys.executable, "-m", "singimpact", "--help"], capture_output=True, text=True, check=True)
+    assert singimpact.__doc__.startswith(f"{project['description']}.")
+    assert f"{project['description']}." in " ".join(told.stdout.split())
+    minors = re.search(r"for minor in ([\d ]+);", (clone / ".ci" / "release").read_text())[1].split()
+    pythons = [line for line in project["classifiers"] if line.startswith("Programming Language :: Python :: 3.")]
+    assert pythons == [f"Programming Language :: Python :: 3.{minor}" for minor in minors]
 
 
 def test_optional_parts_are_named_where_a_user_looks(readme, clone):
