@@ -19,6 +19,8 @@ exclude_patterns = ["build"]
 html_theme = "furo"
 html_title = f"singimpact {__version__}"
 html_static_path = ["_static"]
+(Path(__file__).parent / "computed" / "pages").mkdir(parents=True, exist_ok=True)
+html_extra_path = ["computed/pages"]  # interactive pages of named models
 html_css_files = ["narrow.css"]
 smartquotes_action = "D"  # dashes, and no quotes: x'' is a second derivative
 add_module_names = False

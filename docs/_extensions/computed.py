@@ -218,6 +218,17 @@ def gamma_proved(place: Path) -> None:
     axes.figure.savefig(place / "gamma_proved.png", dpi=110)
 
 
+LIVE = ("shaw_holmes", "budd_dux", "duffing_friction", "luck_mehta", "pendulum", "universal_swan")
+
+
+def live(place: Path) -> None:
+    """Interactive pages of named models."""
+    import singimpact as si
+
+    for name in LIVE:
+        si.models[name]().explore(steps=21).save(place / f"{name}.html")
+
+
 def build(app: Any) -> None:
     """Write the pages into the folder `computed` beside those that are written by hand."""
     from singimpact.store import folder
@@ -233,6 +244,7 @@ def build(app: Any) -> None:
     manifolds(place)
     gamma_proved(place)
     border(place)
+    live(folder(place / "pages" / "explore"))
 
 
 def _put(path: Path, text: str) -> None:

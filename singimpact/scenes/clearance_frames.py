@@ -11,6 +11,7 @@ from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.expressions import evaluate, names_in, number, substitute
 from singimpact.algebra.numbers import Array, as_float, compare
 from singimpact.algebra.rings import DOUBLES
+from singimpact.contact.points import is_polynomial
 from singimpact.contact.swans import SwanPoint, swan_points_over_clearance
 from singimpact.dynamics.invariant_arcs import grown_gamma
 from singimpact.inputs import refuse
@@ -32,6 +33,7 @@ class FilmSettings:
     ----------
     opening : half the distance of the two tangency points at the ends of the slider, in periods: the window below is
         then less than a period. alone : the same when there is no period. aside : of the clearance, where no swan is.
+        around : of the clearance, where swans are looked for if f(x, 0) is not a polynomial.
     reach_tau, reach_t : of the window, in those halves; the unfolded swan reaches to 3 and 4.
     height : of the picture, in sizes of the cusp of P, (64/24) |a''| half^3.
     steps : of the slider. pixels : of a panel.
@@ -40,6 +42,7 @@ class FilmSettings:
     opening: float = 1 / 12
     alone: float = 0.5
     aside: float = 0.1
+    around: float = 2.0
     reach_tau: float = 4.0
     reach_t: float = 6.0
     height: float = 1.5  # a swan that is opened wide is higher than its leading part
@@ -165,8 +168,10 @@ def _feels_clearance(model: Oscillator) -> bool:
 
 
 def _nearest_swan(model: Oscillator, between: tuple[Fraction, Fraction] | None) -> SwanPoint | None:
-    swans = swan_points_over_clearance(model, between) if _feels_clearance(model) else ()
     here = as_float(model.clearance)
+    if between is None and not is_polynomial(substitute(model.force(), {"xdot": number(0)})):  # no bound of all swans
+        between = Fraction(here - SETTINGS.around), Fraction(here + SETTINGS.around)
+    swans = swan_points_over_clearance(model, between) if _feels_clearance(model) else ()
     return min(swans, key=lambda swan: abs(swan.clearance - here), default=None)
 
 
@@ -178,7 +183,16 @@ def _across(model: Oscillator, between: tuple[Fraction, Fraction] | None, steps:
     outline = ImpactSurface(model, tau, t, 1 / SETTINGS.pixels).outline
     heights = [float(np.abs(curve.points[:, 1]).max()) for curve in outline]
     view = View(tau, t, SETTINGS.height * max(heights, default=1.0))
-    return [(clearance, view) for clearance in np.linspace(low, high, steps).tolist()]
+    places = np.linspace(low, high, steps)
+    _with_own(places, here, None)
+    return [(clearance, view) for clearance in places.tolist()]
+
+
+def _with_own(places: Array, own: float, swan: float | None) -> None:
+    """Move the nearest place between the ends to the model's own clearance, if it is not that of the swan."""
+    nearest = int(np.clip(np.argmin(np.abs(places - own)), 1, max(places.size - 2, 1)))
+    if places[0] < own < places[-1] and places.size > 2 and places[nearest] != swan:
+        places[nearest] = own
 
 
 def _through(swan: SwanPoint, between: tuple[Fraction, Fraction] | None, steps: int) -> list[tuple[float, View]]:
@@ -192,13 +206,16 @@ def _through(swan: SwanPoint, between: tuple[Fraction, Fraction] | None, steps: 
     widest = SETTINGS.alone if period is None else SETTINGS.opening * as_float(period)
     if between is None:
         away = curvature * widest**2 / (2 * slope)
+        here = as_float(swan.model.clearance)
         low, high = swan.clearance - away, swan.clearance + away
+        low, high = here - away / 2 if here < low else low, here + away / 2 if here > high else high
     else:
         low, high = map(float, between)
         away = max(swan.clearance - low, high - swan.clearance)
     half = min(widest, (2 * slope * away / curvature) ** 0.5)
     places = np.linspace(low, high, steps)
     places[np.argmin(np.abs(places - swan.clearance))] = swan.clearance
+    _with_own(places, as_float(swan.model.clearance), swan.clearance)
     size = SETTINGS.height * 64 / 24 * curvature * half**3
 
     def view(clearance: float) -> View:

@@ -30,7 +30,7 @@ from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.rebound import rho_of
 from singimpact.progress import ProgressLine
 from singimpact.scenes.clearance_frames import SETTINGS, ClearanceFilm, ClearanceFrame, clearance_film
-from singimpact.scenes.style import BLACK, PENS, Pen
+from singimpact.scenes.style import PENS, Pen, on_dark
 from singimpact.store import write_text
 
 CURVES = {
@@ -119,7 +119,7 @@ def explore_page(film: ClearanceFilm) -> str:
         text += f" Parameters: {', '.join(f'{name} = {value}' for name, value in model.parameters.items())}."
     page = (PARTS / "page.html").read_text(encoding="utf-8")
     filled = {
-        "title": "Across clearances" if film.swan is None else "Through a swan",
+        "title": escape(f"x'' + {model.f} = {model.g}, x \u2265 c"),
         "model": escape(text),
         "sentence": escape(film.sentence.replace("c_0", "c\u2080").replace("tau =", "\u03c4 =")),
         "method": escape(METHOD),
@@ -139,7 +139,7 @@ def _script(film: ClearanceFilm) -> str:
         {"name": pen, "label": label, "dot": PENS[pen].color if pen == "orbit" else None}
         for pen, label in CURVES.values()
     ]
-    legend.append({"name": "P", "label": "tangency points", "dot": BLACK})
+    legend.append({"name": "P", "label": "tangency points", "dot": "currentColor"})
     parts.append(as_script("LEGEND", legend))
     return "\n".join([*parts, *((PARTS / name).read_text(encoding="utf-8") for name in ("flight.js", "page.js"))])
 
@@ -147,15 +147,16 @@ def _script(film: ClearanceFilm) -> str:
 def _pen(pen: Pen) -> dict[str, Any]:
     """Colour, width and dashes of a curve in the terms of SVG; matplotlib counts dashes in widths of the line."""
     dashes = "none" if pen.style == "solid" else " ".join(f"{part * pen.width:.3g}" for part in pen.style[1])
-    return {"color": pen.color, "width": pen.width, "dashes": dashes}
+    return {"color": pen.color, "dark": on_dark(pen.color), "width": pen.width, "dashes": dashes}
 
 
 def _film(film: ClearanceFilm) -> dict[str, Any]:
     places = [frame.clearance for frame in film.frames]
     swan = None if film.swan is None else places.index(film.swan.clearance)
     here = as_float(film.model.clearance)
-    start = int(np.argmin([abs(place - here) for place in places])) if swan is None else swan
-    return {"swan": swan, "start": start, "frames": [_frame(frame) for frame in film.frames]}
+    start = int(np.argmin([abs(place - here) for place in places]))
+    own = start if places[start] == here else None
+    return {"swan": swan, "start": start, "own": own, "frames": [_frame(frame) for frame in film.frames]}
 
 
 def _frame(frame: ClearanceFrame) -> dict[str, Any]:

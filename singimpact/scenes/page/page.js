@@ -4,6 +4,10 @@ const SVG = "http://www.w3.org/2000/svg";
 const at = (id) => document.getElementById(id);
 let turn_now = MODEL.period;  // the period at the sliders' parameters, null where it is not known
 const state = { frame: FILM.start, r: MODEL.r, given: { ...MODEL.parameters }, start: null, orbit: null };
+const NIGHT = matchMedia("(prefers-color-scheme: dark)");
+const colours = () => NIGHT.matches
+  ? { ink: "#f0f0f0", grid: "#33373c", axis: "#8a8a8a", wall: "#24272b", ground: "#16181b" }
+  : { ink: "#000", grid: "#e6e6e6", axis: "#8a8a8a", wall: "#f1f1f1", ground: "#fff" };
 const short = (value, digits = 6) => String(Number(value.toPrecision(digits)));
 
 function made(name, attributes, text) {
@@ -42,17 +46,17 @@ function panel(id, xs, ys, names, shape) {
   const inside = made("g", { "clip-path": `url(#${id}-clip)` }), frame = made("g", {});
   const across = ticks(...xs, wide < 460 ? 4 : 8), up = ticks(...ys, 6);
   for (const value of across.found) {
-    frame.append(made("line", { x1: x(value), x2: x(value), y1: box.top, y2: box.bottom, stroke: "#e6e6e6" }));
+    frame.append(made("line", { x1: x(value), x2: x(value), y1: box.top, y2: box.bottom, stroke: colours().grid }));
     frame.append(made("text", { x: x(value), y: box.bottom + 17, "text-anchor": "middle" }, across.shown(value)));
   }
   for (const value of up.found) {
-    frame.append(made("line", { x1: box.left, x2: box.right, y1: y(value), y2: y(value), stroke: "#e6e6e6" }));
+    frame.append(made("line", { x1: box.left, x2: box.right, y1: y(value), y2: y(value), stroke: colours().grid }));
     frame.append(made("text", { x: box.left - 7, y: y(value) + 4, "text-anchor": "end" }, up.shown(value)));
   }
   const raised = (each) => each.exponent ? ` (in 1e${each.exponent})` : "";
   frame.append(made("text", { x: (box.left + box.right) / 2, y: high - 6, "text-anchor": "middle" }, names.x + raised(across)));
   frame.append(made("text", { x: 4, y: 14 }, names.y + raised(up)));
-  frame.append(made("rect", { x: box.left, y: box.top, width: box.right - box.left, height: box.bottom - box.top, fill: "none", stroke: "#8a8a8a" }));
+  frame.append(made("rect", { x: box.left, y: box.top, width: box.right - box.left, height: box.bottom - box.top, fill: "none", stroke: colours().axis }));
   svg.append(clip, frame, inside);
   const data = (px, py) => [xs[0] + (px - box.left) / (box.right - box.left) * (xs[1] - xs[0]),
     ys[0] + (box.bottom - py) / (box.bottom - box.top) * (ys[1] - ys[0])];
@@ -60,7 +64,7 @@ function panel(id, xs, ys, names, shape) {
 }
 
 function stroke(pen) {
-  return { fill: "none", stroke: pen.color, "stroke-width": pen.width * 1.25, "stroke-dasharray": pen.dashes, "stroke-linejoin": "round" };
+  return { fill: "none", stroke: NIGHT.matches ? pen.dark || pen.color : pen.color, "stroke-width": pen.width * 1.25, "stroke-dasharray": pen.dashes, "stroke-linejoin": "round" };
 }
 
 function draw(here, name, pieces) {  // pieces: [x, y, x, y, ...]
@@ -114,8 +118,8 @@ function show() {
   const surface = panel("surface", own.tau, own.t, { x: "launch phase τ", y: "flight time t", title: "Z and H in the plane of launch phase and flight time" }, side);
   const states = panel("states", view.tau, view.v, { x: "launch phase τ", y: "velocity v", title: "the plane of states: launch phase and velocity" }, side);
   const low = Math.min(states.box.bottom, Math.max(states.box.top, states.y(0)));
-  states.inside.append(made("rect", { x: states.box.left, y: low, width: states.box.right - states.box.left, height: states.box.bottom - low, fill: "#f1f1f1" }));
-  const rest = made("line", { x1: surface.box.left, x2: surface.box.right, y1: surface.y(0), y2: surface.y(0), stroke: "#8a8a8a" });
+  states.inside.append(made("rect", { x: states.box.left, y: low, width: states.box.right - states.box.left, height: states.box.bottom - low, fill: colours().wall }));
+  const rest = made("line", { x1: surface.box.left, x2: surface.box.right, y1: surface.y(0), y2: surface.y(0), stroke: colours().axis });
   surface.inside.append(rest);
   const fresh = changed.length ? sketched(fly(), own, 160, 161) : null;
   const curve = (name) => fresh ? (fresh[name] || []) : own.curves[name];
@@ -123,12 +127,13 @@ function show() {
   for (const name of ["P", "jump"]) draw(states, name, curve(name));
   draw(states, "gamma", state.r === MODEL.r ? curve("gamma") : []);
   const points = fresh ? [] : own.tangencies.map((tau) => [tau, 0, 4.5]);
-  for (const here of [surface, states]) dots(here, points, "tangencies", { fill: "#000" });
+  for (const here of [surface, states]) dots(here, points, "tangencies", { fill: colours().ink });
   show_orbit(states, view);
   at("clearance-now").textContent = `${short(own.c)}${state.frame === FILM.swan ? " = c₀, the swan" : ""}`;
   at("clearance").setAttribute("aria-valuetext", at("clearance-now").textContent);
   at("curves-note").textContent = note(changed);
   PAGE_NOW.states = states; PAGE_NOW.surface = surface;
+  show_mass();
 }
 
 function note(changed) {
@@ -163,6 +168,8 @@ function show_orbit(states, view) {
     at("notes").textContent = "No orbit yet: click in the plane of states above, or type a launch phase and a velocity. The orbit follows every slider.";
     at("motion").replaceChildren();
     at("motion").setAttribute("viewBox", "0 0 10 0.1");
+    at("mass").replaceChildren();
+    film = null;
     return;
   }
   const turn = turn_now, places = [];
@@ -173,7 +180,7 @@ function show_orbit(states, view) {
     }
   });
   dots(states, places, "orbit", { fill: PENS.orbit.color, stroke: "#5a3d00", "stroke-width": 0.7 });
-  dots(states, [[state.start[0], state.start[1], 6]], "start", { fill: "none", stroke: "#000", "stroke-width": 1.8 });
+  dots(states, [[state.start[0], state.start[1], 6]], "start", { fill: "none", stroke: colours().ink, "stroke-width": 1.8 });
   const start = orbit.tau[0], span = turn ? 8 * turn : 50;
   const impacts = orbit.kind.filter((kind) => kind === "impact").length;
   const ends = orbit.tau[orbit.tau.length - 1] + (orbit.ending ? 0.5 * (turn || 1) : 0);
@@ -181,9 +188,10 @@ function show_orbit(states, view) {
   const points = motion(fly(), orbit, until);
   const rise = points.reduce((a, each) => Number.isFinite(each[1]) ? Math.max(a, each[1]) : a, 0) || 1;
   const here = panel("motion", [start, until], [-0.08 * rise, 1.06 * rise], { x: "time t", y: "x − c", title: "x - c over time" }, (wide) => wide < 600 ? 0.62 : 0.26);
-  here.inside.append(made("line", { x1: here.box.left, x2: here.box.right, y1: here.y(0), y2: here.y(0), stroke: "#000", "stroke-width": 1.6 }));
+  here.inside.append(made("line", { x1: here.box.left, x2: here.box.right, y1: here.y(0), y2: here.y(0), stroke: colours().ink, "stroke-width": 1.6 }));
   const path = points.filter((each) => Number.isFinite(each[1])).flat();
   here.inside.append(made("path", { d: path.reduce((text, value, n) => n % 2 ? text + here.y(value).toFixed(2) : `${text}${n ? "L" : "M"}${here.x(value).toFixed(2)} `, ""), "data-curve": "motion", ...stroke({ ...PENS.orbit, color: "#9a6700", dashes: "none" }) }));
+  film = { here, points: points.filter((each) => Number.isFinite(each[1])), start, until, turn: turn || span / 8 };
   dots(here, orbit.tau.flatMap((tau, n) => tau <= until && n ? [[tau, 0, 2.4]] : []), "impacts", { fill: PENS.orbit.color, stroke: "#5a3d00", "stroke-width": 0.7 });
   const several = (n, one, more) => `${n} ${n === 1 ? one : more}`;
   const told = [`${several(impacts, "impact", "impacts")} until t = ${short(orbit.tau[orbit.tau.length - 1])}; ${WORDS[orbit.ending] || `flight ended with code ${orbit.ending}`}.`];
@@ -198,7 +206,105 @@ function show_orbit(states, view) {
   at("notes").textContent = told.join(" ");
 }
 
+// ---- the mass that bounces
+
+let film = null;
+const clock = { now: null, running: false, last: 0 };
+
+// x - c of the shown orbit at a time, between the points of its curve.
+function height(time) {
+  const points = film.points;
+  let low = 0, high = points.length - 1;
+  while (high - low > 1) {
+    const middle = (low + high) >> 1;
+    if (points[middle][0] <= time) low = middle; else high = middle;
+  }
+  const [t0, x0] = points[low], [t1, x1] = points[high];
+  return t1 > t0 ? x0 + Math.min(1, Math.max(0, (time - t0) / (t1 - t0))) * (x1 - x0) : x0;
+}
+
+function show_mass() {
+  const svg = at("mass");
+  if (!film) return;
+  if (clock.now === null || clock.now < film.start || clock.now > film.until) clock.now = film.start;
+  const { here } = film, high = at("motion").viewBox.baseVal.height, x = height(clock.now), wall = here.y(0);
+  svg.setAttribute("viewBox", `0 0 70 ${high}`);
+  svg.replaceChildren(
+    made("rect", { x: 4, y: wall, width: 62, height: Math.max(0, here.box.bottom - wall), fill: colours().grid }),
+    made("line", { x1: 4, x2: 66, y1: wall, y2: wall, stroke: colours().ink, "stroke-width": 1.6 }),
+    made("rect", { x: 23, y: here.y(x) - 24, width: 24, height: 24, rx: 3, fill: PENS.orbit.color, "data-height": x, "data-time": clock.now }));
+  here.inside.querySelectorAll("[data-now]").forEach((each) => each.remove());
+  here.inside.append(made("circle", { cx: here.x(clock.now), cy: here.y(x), r: 5, fill: colours().ink, "data-now": "" }));
+}
+
+function tick(now) {
+  if (!clock.running) return;
+  if (film) {
+    clock.now += Math.min(0.1, (now - clock.last) / 1000) * film.turn / 1.6;  // a period in 1.6 seconds
+    if (clock.now > film.until) clock.now = film.start;
+    show_mass();
+  }
+  clock.last = now;
+  requestAnimationFrame(tick);
+}
+
+function play() {
+  clock.running = !clock.running;
+  clock.last = performance.now();
+  at("play").textContent = clock.running ? "Pause" : "Play";
+  if (clock.running) requestAnimationFrame(tick);
+}
+
+// ---- files, and the link that keeps the state
+
+function save(name, type, text) {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(new Blob([text], { type }));
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+}
+
+const csv = () => ["tau,v,kind", ...state.orbit.tau.map((tau, n) => `${tau},${state.orbit.v[n]},${state.orbit.kind[n]}`)].join("\n") + "\n";
+
+// The panels below one another, as one file.
+function picture() {
+  let top = 0, wide = 0;
+  const parts = ["surface", "states", "motion"].map(at).filter((each) => each.childNodes.length).map((each) => {
+    const { width, height } = each.viewBox.baseVal, here = top;
+    top += height + 12; wide = Math.max(wide, width);
+    return `<svg y="${here}" width="${width}" height="${height}" viewBox="0 0 ${width} ${height}">${[...each.childNodes].map((node) => new XMLSerializer().serializeToString(node)).join("")}</svg>`;
+  });
+  return `<svg xmlns="${SVG}" width="${wide}" height="${top}" viewBox="0 0 ${wide} ${top}"><style>text { font: 12px sans-serif; fill: ${colours().ink}; }</style><rect width="100%" height="100%" fill="${colours().ground}"/>${parts.join("")}</svg>`;
+}
+
+function address() {
+  const kept = { c: frame().c, r: state.r, ...Object.fromEntries(Object.keys(MODEL.parameters).map((name) => [`p.${name}`, state.given[name]])) };
+  if (state.start) [kept.tau, kept.v] = state.start;
+  return `#${new URLSearchParams(kept)}`;
+}
+
+// What the address says, where it says something.
+function recall() {
+  const kept = new URLSearchParams(location.hash.slice(1)), value = (name) => kept.has(name) && Number.isFinite(Number(kept.get(name))) ? Number(kept.get(name)) : null;
+  if (value("c") !== null) to_frame(FILM.frames.reduce((best, each, n) => Math.abs(each.c - value("c")) < Math.abs(FILM.frames[best].c - value("c")) ? n : best, 0));
+  for (const name in setters) if (value(name) !== null) setters[name](value(name));
+  const own = frame(), middle = (own.tau[0] + own.tau[1]) / 2;
+  start_orbit(value("tau") ?? Number(middle.toPrecision(6)), value("v") ?? Number((0.4 * own.v[1]).toPrecision(4)));
+  if (MODEL.period && Math.max(...state.orbit.v.map(Math.abs)) > own.v[1]) {  // the impacts lie above the window
+    at("axes").value = "period";
+    show();
+  }
+}
+
+function to_frame(n) {
+  at("clearance").value = n;
+  state.frame = n;
+}
+
 // ---- controls
+
+const setters = {};
 
 function slider(id, label, low, high, value, changed) {
   const box = document.createElement("div"), step = (high - low) / 200;
@@ -215,6 +321,7 @@ function slider(id, label, low, high, value, changed) {
   });
   put(value);
   document.querySelector(".controls").append(box);
+  setters[label === "restitution r" ? "r" : `p.${label}`] = (now) => { put(now); changed(now); };
   return () => { put(value); changed(value); };
 }
 
@@ -224,15 +331,27 @@ function begin() {
   const clearance = at("clearance"), last = FILM.frames.length - 1;
   clearance.max = last; clearance.value = FILM.start;
   clearance.addEventListener("input", () => { state.frame = Number(clearance.value); fly_now(); show(); });
-  back.push(() => { clearance.value = FILM.start; state.frame = FILM.start; });
+  back.push(() => to_frame(FILM.start));
+  if (FILM.swan === null) at("swan").remove();
+  else at("swan").addEventListener("click", () => { to_frame(FILM.swan); fly_now(); show(); });
+  at("play").addEventListener("click", play);
+  at("save-csv").addEventListener("click", () => { if (state.orbit) save("impacts.csv", "text/csv", csv()); });
+  at("save-picture").addEventListener("click", () => save("oscillator.svg", "image/svg+xml", picture()));
+  at("link").addEventListener("click", () => {
+    location.replace(address());
+    if (navigator.clipboard) navigator.clipboard.writeText(location.href).catch(() => {});
+  });
+  NIGHT.addEventListener("change", show);
   const mark = (n, text, kind) => {
     const span = document.createElement("span");
     span.textContent = text; span.className = kind; span.style.left = `${100 * n / last}%`;
     at("places").append(span);
   };
-  mark(0, short(FILM.frames[0].c, 4), "first");
+  const beside = FILM.own !== null && FILM.own / last < 0.12, before = FILM.own !== null && FILM.own / last > 0.88;
+  mark(0, beside ? "" : short(FILM.frames[0].c, 4), "first");
   if (FILM.swan !== null) mark(FILM.swan, `c₀ = ${short(FILM.frames[FILM.swan].c, 5)}`, FILM.swan === 0 ? "swan first" : FILM.swan === last ? "swan last" : "swan");
-  mark(last, short(FILM.frames[last].c, 4), "last");
+  mark(last, before ? "" : short(FILM.frames[last].c, 4), "last");
+  if (FILM.own !== null && FILM.own !== 0 && FILM.own !== last) mark(FILM.own, "model", "own");
   if (MODEL.r_moves) back.push(slider("restitution", "restitution r", 0.01, 1, MODEL.r, (now) => { state.r = now; }));
   Object.keys(MODEL.parameters).forEach((name, n) => {
     const value = MODEL.parameters[name], away = value === 0 ? 1 : 0.5 * Math.abs(value);
@@ -265,6 +384,6 @@ function begin() {
   new ResizeObserver(() => {
     if (width !== document.body.clientWidth) { width = document.body.clientWidth; show(); }
   }).observe(document.body);
-  show();
+  recall();
 }
 begin();

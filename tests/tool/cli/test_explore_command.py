@@ -13,7 +13,7 @@ def test_page_in_a_file(singimpact, tmp_path):
     model.write_text('f = "x"\ng = "cos(2*t)"\nclearance = "0.9"\nrestitution = "1/2"\n')
     done = singimpact("explore", model, "--steps", "2", "--html", tmp_path / "page.html")
     assert (done.exit_code, done.output) == (0, "")
-    assert "<title>Through a swan</title>" in (tmp_path / "page.html").read_text()
+    assert "<title>x&#x27;&#x27; + x = cos(2*t), x ≥ c</title>" in (tmp_path / "page.html").read_text()
 
 
 def test_curves_as_json(singimpact):

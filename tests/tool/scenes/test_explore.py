@@ -10,7 +10,7 @@ import pytest
 import singimpact as si
 from singimpact.flights.kernels import roots
 from singimpact.inputs import InputError
-from singimpact.scenes import CURVES, PENS, clearance_film, explore_page
+from singimpact.scenes import CURVES, PENS, clearance_film, explore_page, on_dark
 
 NEGATIVE = si.linear(2, "0.9", "0.5")
 DUFFING = si.ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "cos(omega*t)", "0.7", "0.6", {"omega": "1.7"})
@@ -85,7 +85,21 @@ def test_ends_without_a_swan_between_them_are_shown():
     assert all(frame.curves["gamma"] for frame in film.frames)
     page = explore_page(film)
     assert "No swan lies between" in page
-    assert "<title>Across clearances</title>" in page
+    assert "<title>x&#x27;&#x27; + x = cos(omega*t), x \u2265 c</title>" in page
+
+
+def test_a_model_without_a_bound_of_all_swans_is_shown_too():
+    film = clearance_film(si.models.pendulum(), steps=5)
+    assert 0 in [frame.clearance for frame in film.frames]  # its own
+    assert film.swan is not None
+
+
+def test_the_models_own_clearance_is_a_place_of_the_slider():
+    far = clearance_film(si.linear("2.8", "0.1", "0.8", amplitude=-1), steps=21)
+    places = [frame.clearance for frame in far.frames]
+    assert {0.1, 1.0} <= set(places)
+    assert places == sorted(places)
+    assert len(explore_page(far)) < 400_000
 
 
 def test_windows_follow_the_swan(film):
@@ -95,7 +109,7 @@ def test_windows_follow_the_swan(film):
         share = np.ptp(Z[:, 1]) / np.ptp(frame.view.t)
         assert 0.4 < share < 1
         assert np.abs(frame.curves["P"][0].points[:, 1]).max() < frame.view.v[1]
-    assert np.ptp(film.frames[1].view.v) < np.ptp(film.frames[0].view.v) / 2
+    assert np.ptp(film.frames[1].view.v) < np.ptp(film.frames[0].view.v) * 0.7
 
 
 def test_page_holds_everything(film):
@@ -188,9 +202,8 @@ def test_what_is_drawn_is_the_data_at_ten_places(opened, browser):
     with open(path, "w") as page:
         page.write(explore_page(film))
     browser.get(browser.current_url)
-    assert browser.execute_script("return Number(at('clearance').value)") == [f.clearance for f in film.frames].index(
-        1.0
-    )
+    own = [frame.clearance for frame in film.frames].index(0.9)  # the model's clearance is a place of the slider
+    assert browser.execute_script("return [Number(at('clearance').value), state.frame]") == [own, own]
     for n, frame in enumerate(film.frames):
         browser.execute_script(MOVE, "clearance", n)
         for panel, names in (("surface", ("Z", "H")), ("states", ("P", "jumps", "gamma"))):
@@ -309,6 +322,7 @@ def test_a_click_starts_an_orbit_and_sliders_move_it(opened, film):
     from selenium.webdriver.common.action_chains import ActionChains
 
     browser = opened()
+    browser.execute_script("at('axes').value = 'follow'")
     browser.execute_script(MOVE, "clearance", 0)
     _, _, pixel, _ = read(browser, "states")
     frame = film.frames[0]
@@ -338,7 +352,9 @@ def test_a_click_starts_an_orbit_and_sliders_move_it(opened, film):
     assert curves["P"]
     assert "drawn at r = 0.5 only" in browser.execute_script("return at('curves-note').textContent")
     browser.find_element("id", "reset").click()
-    assert browser.execute_script("return [state.r, state.frame]") == [0.5, 2]
+    assert browser.execute_script("return [state.r, state.frame]") == [0.5, 1]
+    browser.find_element("id", "swan").click()
+    assert browser.execute_script("return [state.frame, frame().c]") == [2, 1]
 
 
 def test_curves_sketched_in_the_page_are_those_of_python(opened):
@@ -367,6 +383,68 @@ def test_a_parameter_moved_shows_sketches_and_says_so(opened):
     said = browser.execute_script("return [at('curves-note').textContent, turn_now, state.given.w]")
     assert "sketched" in said[0]
     assert said[1] == pytest.approx(2 * np.pi / said[2], rel=1e-12)
+
+
+def test_it_opens_with_an_orbit_that_plays(opened):
+    browser = opened()
+    height = "return Number(document.querySelector('#mass [data-height]').dataset.height)"
+    time = "return Number(document.querySelector('#mass [data-height]').dataset.time)"
+    start, shown = browser.execute_script("return [state.start, state.orbit.tau.length]")
+    assert shown > 2
+    assert browser.execute_script(height) == 0
+    browser.find_element("id", "play").click()
+    browser.execute_async_script("setTimeout(arguments[0], 700)")
+    assert browser.find_element("id", "play").text == "Pause"
+    browser.find_element("id", "play").click()
+    now, x = browser.execute_script(time), browser.execute_script(height)
+    assert now > start[0]
+    browser.execute_async_script("setTimeout(arguments[0], 200)")
+    assert browser.execute_script(time) == now  # it pauses
+    truth = NEGATIVE.orbit(*start, impacts=200).sample(now).x - 0.9
+    assert x == pytest.approx(float(truth), abs=2e-3)
+
+
+def test_a_link_keeps_the_state(opened):
+    browser = opened(DUFFING)
+    browser.execute_script(MOVE, "clearance", 1)
+    browser.execute_script(MOVE, "restitution", 120)
+    browser.execute_script(MOVE, "parameter-0", 90)
+    browser.execute_script("start_orbit(0.7, 0.25)")
+    asked = "return [frame().c, state.r, state.given.omega, ...state.start, state.orbit.v[2]]"
+    before, link = browser.execute_script(asked), browser.execute_script("return location.pathname + address()")
+    browser.get("about:blank")
+    browser.get(f"file://{link}")
+    assert browser.execute_script(asked) == before
+    assert before[3:5] == [0.7, 0.25]
+
+
+def test_files_of_the_orbit_and_of_the_picture(opened):
+    from xml.etree import ElementTree
+
+    browser = opened()
+    lines = browser.execute_script("return csv()").splitlines()
+    assert lines[0] == "tau,v,kind"
+    assert len(lines) == 1 + browser.execute_script("return state.orbit.tau.length")
+    assert float(lines[1].split(",")[0]) == browser.execute_script("return state.start[0]")
+    drawing = ElementTree.fromstring(browser.execute_script("return picture()"))
+    curves = {path.get("data-curve") for path in drawing.iter("{http://www.w3.org/2000/svg}path")}
+    assert {"Z", "H", "P", "jump", "gamma", "motion"} <= curves
+
+
+def test_by_night_it_is_dark(opened):
+    browser = opened()
+    ground = "return getComputedStyle(document.body).backgroundColor"
+    line = "return document.querySelector('#states [data-curve=jump]').getAttribute('stroke')"
+    day = browser.execute_script(ground), browser.execute_script(line)
+    night = {"features": [{"name": "prefers-color-scheme", "value": "dark"}]}
+    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", night)
+    try:
+        assert day == ("rgb(255, 255, 255)", PENS["jump"].color)
+        browser.execute_async_script("setTimeout(arguments[0], 100)")
+        assert browser.execute_script(ground) == "rgb(22, 24, 27)"
+        assert browser.execute_script(line) == on_dark(PENS["jump"].color) != day[1]
+    finally:
+        browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
 
 
 def test_a_phone_shows_it_without_scrolling_sideways(opened):
