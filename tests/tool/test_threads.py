@@ -202,8 +202,8 @@ def taking_digits():
 
 def takes_digits(each, room):
     """Whether an object of a room is a public function with `digits`; not one of another room that is used there."""
-    if not inspect.isfunction(each) or each.__name__.startswith("_"):
-        return False
+    if not inspect.isfunction(each) or each.__name__.startswith("_") or "." in each.__qualname__:
+        return False  # a method that is a function too is tried as a method
     return "digits" in inspect.signature(each).parameters and each.__module__.startswith(
         room.__name__.removesuffix(".__init__"))  # fmt: skip
 
