@@ -28,6 +28,7 @@ FORMATS = ("latex", "pdf", "markdown", "json", "sympy", "numpy")
 @click.option("--model", metavar="FILE", help="Write the series of this model.")
 @click.option("--tau", help="With --model: the point of the series.  [default: tangency and swan points]")
 @click.option("--keep", metavar="NAME", multiple=True, help="With --model: a parameter that stays a letter.")
+@click.option("--only", metavar="SERIES", help="Print this series alone, such as gamma, as one formula in LaTeX.")
 @click.option("--json", "as_json", is_flag=True, help="The same as --format json.")
 @click.option(
     "-o", "--output", metavar="DIR", help="Write files into this folder instead of one text to standard output."
@@ -39,6 +40,7 @@ def command(
     model: str | None,
     tau: str | None,
     keep: tuple[str, ...],
+    only: str | None,
     as_json: bool,
     output: str | None,
 ) -> None:
@@ -49,6 +51,11 @@ def command(
     With --order or --model the series v_c, gamma and more are written instead, in any format. The formats sympy and
     numpy always write series. The numpy file of a model holds tau_* and the radius in which each series is accurate.
     """
+    if only is not None:
+        from singimpact.documents.series_documents import series_formulas
+
+        click.echo("\n".join(series_formulas(_request(order, model, tau, keep), only)))
+        return
     form = "json" if as_json else form
     if form == "pdf" and output is None:
         raise InputError("--format pdf goes to files only: give a folder with -o")

@@ -16,7 +16,7 @@ from singimpact.algebra.balls import Balls
 from singimpact.algebra.precision import balls_at
 from singimpact.codegen.polynomial_source import RATIO_SOURCE, Coefficient, Exponents, function_source, module_source
 from singimpact.documents.document_steps import Section, Step
-from singimpact.inputs import InputError
+from singimpact.inputs import InputError, unknown
 from singimpact.oscillator.model import Oscillator
 from singimpact.theory import chatter_limit, dynamics_on_gamma, fibre, gamma, normal_form, v_c
 from singimpact.theory.contact_points import Place, place, points_of
@@ -275,6 +275,24 @@ def series_section(request: SeriesRequest) -> Section:
     return Section(
         "series", f"Series for {of}", (_LETTERS, *(step for each in series(request) for step in _steps(each)))
     )
+
+
+def series_formulas(request: SeriesRequest, name: str) -> list[str]:
+    """The series of a name, or of names that begin with it, each as one formula in LaTeX; of several, what each is.
+
+    Examples
+    --------
+    >>> print(series_formulas(SeriesRequest(3, None, None, ()), "gamma_swan")[0])
+    v = \\tfrac{1}{24} a'' \\sigma^{3} (1 - \\lambda) (\\lambda^{2} + 2 \\lambda + 3) + O(4)
+    """
+    listed = list(series(request))
+    chosen = [each for each in listed if each.name == name or each.name.startswith(f"{name}_")]
+    if not chosen:
+        raise unknown("series", name, [each.name for each in listed])
+    formulas = [f"{each.left} = {' '.join(_terms(each))} + O({each.order + 1})" for each in chosen]
+    if len(chosen) == 1:
+        return formulas
+    return [f"% {each.says}\n{formula}" for each, formula in zip(chosen, formulas, strict=True)]
 
 
 _LETTERS = Step(

@@ -15,6 +15,7 @@ from singimpact.documents.rendering import latex_text, latex_words, markdown_tex
 from singimpact.inputs import checked_keywords
 from singimpact.paper.sections.remarks import GRADES, PLURALS, Remark, remark_on
 from singimpact.paper.sections.stored_sections import kept_legend
+from singimpact.progress import ProgressLine
 
 if TYPE_CHECKING:
     from singimpact.paper.claims.claim import Claim, Verdict
@@ -383,12 +384,15 @@ def errata(on_start: Callable[[Entry | Claim, int, int], None] | None = None) ->
 
     Parameters
     ----------
-    on_start : called with the claim, its place and the number of claims before each is worked on.
+    on_start : called with the claim, its place and the number of claims before each is worked on; without it a line of
+        progress is shown on a terminal, or under the cell of a notebook.
     """
     from singimpact.paper.claims import run, select
 
     claims = select()
-    verdicts = {verdict.id: verdict for verdict in run(claims, on_start=on_start, cached=True)}
+    with ProgressLine() as line:
+        show = on_start or (lambda claim, index, total: line.show(index, total, claim.id))
+        verdicts = {verdict.id: verdict for verdict in run(claims, on_start=show, cached=True)}
     entries = []
     for verdict in verdicts.values():
         if verdict.kind == "corrected":

@@ -187,3 +187,16 @@ def test_files_keep_thirty_digits(tmp_path, model_file):
 def test_refusals(arguments, sentence):
     with pytest.raises(InputError, match=sentence):
         told(*arguments)
+
+
+def test_one_series_alone(singimpact):
+    alone = singimpact("derive", "--only", "gamma_swan", "--order", "3")
+    assert alone.stdout.count("\n") == 1
+    assert alone.stdout.startswith("v = ")
+    assert alone.stdout.rstrip() in singimpact("derive", "--order", "3").stdout.replace("\n&\\quad{}", " ")
+    both = singimpact("derive", "--only", "gamma", "--order", "3").stdout.splitlines()
+    assert both[0] == "% Velocity on the invariant curve at a tangency point"
+    assert both[3] == alone.stdout.rstrip()
+    refused = singimpact("derive", "--only", "gama")
+    assert refused.exit_code == 2
+    assert "unknown series 'gama'" in refused.stderr
