@@ -286,13 +286,12 @@ def series_formulas(request: SeriesRequest, name: str) -> list[str]:
     v = \\tfrac{1}{24} a'' \\sigma^{3} (1 - \\lambda) (\\lambda^{2} + 2 \\lambda + 3) + O(4)
     """
     listed = list(series(request))
-    chosen = [each for each in listed if each.name == name or each.name.startswith(f"{name}_")]
+    chosen = [one for one in listed if one.name == name or one.name.startswith(f"{name}_")]
     if not chosen:
-        raise unknown("series", name, [each.name for each in listed])
-    formulas = [f"{each.left} = {' '.join(_terms(each))} + O({each.order + 1})" for each in chosen]
-    if len(chosen) == 1:
-        return formulas
-    return [f"% {each.says}\n{formula}" for each, formula in zip(chosen, formulas, strict=True)]
+        raise unknown("series", name, [one.name for one in listed])
+    said = [f"% {one.says}\n" if len(chosen) > 1 else "" for one in chosen]
+    formulas = (f"{one.left} = {' '.join(_terms(one))} + O({one.order + 1})" for one in chosen)
+    return [words + formula for words, formula in zip(said, formulas, strict=True)]
 
 
 _LETTERS = Step(

@@ -97,8 +97,8 @@ class Orbit(Result):
         times = float_array("t", t)
         flat = times.ravel()
         if flat.size and not ((flat >= self.tau[0]) & (flat <= self.end)).any():
-            told = f"t = {shown(t)}: the orbit is known from {self.tau[0]:.6g} to {self.end:.6g}; x and xdot are nan"
-            warnings.warn(told, stacklevel=3)
+            words = f"t = {shown(t)}: the orbit is known from {self.tau[0]:.6g} to {self.end:.6g}; x and xdot are nan"
+            warnings.warn(words, stacklevel=3)
         order = np.argsort(flat, kind="stable")
         out = np.full((flat.size, 2), np.nan)
         events = self.tau, self.v, self.kind
