@@ -33,7 +33,7 @@ def test_pages_are_there(site, clone):
     ideas = ["index", "impact_surface", "regular", "tangency", "swan", "unfolding", "one_structure"]
     ideas += ["branches", "gamma_proved", "manifolds"]
     computed = ["errata", "claims", "commands", "figures"]
-    pages += ["changelog", "citation", "bibliography"]
+    pages += ["changelog", "citation", "bibliography", "faq", "models"]
     pages += [f"reference/{path.stem}" for path in (clone / "docs" / "reference").glob("*.md")]
     pages += [f"explanation/{name}" for name in ideas] + [f"computed/{name}" for name in computed]
     assert [page for page in pages if (site / f"{page}.html").stat().st_size < 3000] == []
