@@ -31,8 +31,7 @@ Function = Callable[..., Any]
 
 def public(name: str) -> Function:
     """The function of `singimpact` of a name."""
-    function: Function = getattr(import_module("singimpact"), name)
-    return function
+    return getattr(import_module("singimpact"), name)  # type: ignore[no-any-return]
 
 
 class Study:

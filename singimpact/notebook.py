@@ -49,8 +49,7 @@ def box(thing: object, more: str) -> str:
     """
     latex = getattr(getattr(thing, "oscillator", getattr(thing, "model", None)), "_repr_latex_", None)
     equation = f"<div>{latex()}</div>" if latex else ""
-    kind = type(thing)
-    where = f"<small>help: <code>help({kind.__module__}.{kind.__qualname__})</code></small>"
+    where = f"<small>help: <code>help({type(thing).__module__}.{type(thing).__qualname__})</code></small>"
     folded = f"<details><summary>numbers</summary>{more}</details>"
     return f"<div><pre>{escape(str(thing))}</pre>{equation}{_picture(thing)}{folded}{where}</div>"
 

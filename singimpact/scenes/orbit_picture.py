@@ -19,6 +19,7 @@ from singimpact.dynamics.sampling import Section
 from singimpact.flights.flight_path import path
 from singimpact.inputs import InputError, checked_keywords, refuse, whole
 from singimpact.store import written
+from singimpact.studies import clearances
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -328,8 +329,8 @@ class OrbitAnimation:
     def _gif(self) -> bytes:
         first, *others = self._pictures()
         stream = BytesIO()
-        pace = round(1000 / self.rate, -1)  # a GIF counts hundredths of a second
-        first.save(stream, "GIF", save_all=True, append_images=others, duration=pace, loop=0)
+        # a GIF counts hundredths of a second
+        first.save(stream, "GIF", save_all=True, append_images=others, duration=round(1000 / self.rate, -1), loop=0)
         return stream.getvalue()
 
     def _mp4(self, path: str | FilePath) -> bytes:
@@ -337,6 +338,8 @@ class OrbitAnimation:
 
         if not FFMpegWriter.isAvailable():
             raise InputError(f"{path} needs the program ffmpeg, which is not found: install it, or give .gif or .html")
+        for artist in self.show(0):
+            artist.set_animated(False)  # or it is left out of a film that is saved after a GIF
         with TemporaryDirectory() as place:
             film = FuncAnimation(self.figure, self.show, frames=self.frames)
             film.save(FilePath(place) / "film.mp4", writer=FFMpegWriter(fps=self.rate))
@@ -361,11 +364,11 @@ def animate(orbit: Orbit, between: tuple[float, float] | None = None, frames: in
 
     if not isinstance(orbit, Orbit):
         raise refuse("orbit", type(orbit).__name__, "an orbit of `osc.orbit`")
-    count = whole("frames", frames, 2, 10_000)
-    begin, end = (_since(orbit), shown_end(orbit, STYLE)) if between is None else between
-    if not float(orbit.tau[0]) <= begin < end <= max(shown_end(orbit, STYLE), orbit.end):
-        raise refuse("between", between, f"two times from {orbit.tau[0]:.6g} to {shown_end(orbit, STYLE):.6g}")
-    times = np.linspace(begin, end, count)
+    first, last = float(orbit.tau[0]), max(shown_end(orbit, STYLE), orbit.end)
+    begin, end = (_since(orbit), shown_end(orbit, STYLE)) if between is None else map(float, clearances(between))
+    if not first <= begin < end <= last:
+        raise refuse("between", between, f"two times from {first:.6g} to {last:.6g}")
+    times = np.linspace(begin, end, whole("frames", frames, 2, 10_000))
     heights, wall = orbit.sample(times).x, as_float(orbit.oscillator.clearance)
     figure = Figure(figsize=(7.2, 3.2), dpi=80, layout="constrained")
     still, moving = figure.subplots(1, 2, sharey=True, width_ratios=(1, 4))
@@ -383,4 +386,4 @@ def animate(orbit: Orbit, between: tuple[float, float] | None = None, frames: in
         point.set_data([times[at]], [heights[at]])
         return mass, point
 
-    return OrbitAnimation(figure, show, count)
+    return OrbitAnimation(figure, show, times.size)

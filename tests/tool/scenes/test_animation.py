@@ -53,14 +53,21 @@ def test_a_film(orbit, tmp_path):
             si.animate(orbit, frames=5).save(tmp_path / "bounce.mp4")
         assert list(tmp_path.iterdir()) == []
         return
-    si.animate(orbit, frames=5).save(tmp_path / "bounce.mp4")
-    assert b"ftyp" in (tmp_path / "bounce.mp4").read_bytes()[:16]
+    film = si.animate(orbit, frames=5)
+    film.save(tmp_path / "first.mp4")
+    film.save(tmp_path / "bounce.gif")
+    film.save(tmp_path / "bounce.mp4")
+    content = (tmp_path / "bounce.mp4").read_bytes()
+    assert b"ftyp" in content[:16]
+    assert len(content) == len((tmp_path / "first.mp4").read_bytes())  # the mass is in it after a GIF too
 
 
 @pytest.mark.parametrize(
     ("call", "told"),
     [
-        (lambda orbit: si.animate(orbit, (5, 1)), "between = (5, 1) is not accepted: give two times from 1.2 to"),
+        (lambda orbit: si.animate(orbit, (5, 1)), "between = (5, 1) is not accepted: give two numbers low < high"),
+        (lambda orbit: si.animate(orbit, 3), "between = 3 is not accepted: give two numbers low < high"),
+        (lambda orbit: si.animate(orbit, (0, 2)), "between = (0, 2) is not accepted: give two times from 1.2 to"),
         (lambda orbit: si.animate(orbit, frames=1), "frames = 1 is not accepted: give a whole number from 2 to 10000"),
         (lambda _: si.animate(3), "orbit = 'int' is not accepted: give an orbit of `osc.orbit`"),
         (lambda orbit: si.animate(orbit).save("x.avi"), "a file name ending in .gif, .html or .mp4"),
