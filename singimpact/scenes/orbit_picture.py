@@ -340,10 +340,10 @@ class OrbitAnimation:
             raise InputError(f"{path} needs the program ffmpeg, which is not found: install it, or give .gif or .html")
         for artist in self.show(0):
             artist.set_animated(False)  # or it is left out of a film that is saved after a GIF
-        with TemporaryDirectory() as place:
+        with TemporaryDirectory() as folder:
             film = FuncAnimation(self.figure, self.show, frames=self.frames)
-            film.save(FilePath(place) / "film.mp4", writer=FFMpegWriter(fps=self.rate))
-            return (FilePath(place) / "film.mp4").read_bytes()
+            film.save(FilePath(folder) / "film.mp4", writer=FFMpegWriter(fps=self.rate))
+            return (FilePath(folder) / "film.mp4").read_bytes()
 
 
 @checked_keywords
