@@ -58,7 +58,8 @@ COMMAND = "import sys\nfrom singimpact.cli import main\ntry:\n    main({})\nexce
         "import sys, singimpact.paper.sections.errata\n",
     ],
 )
-def test_kept_verdicts_are_shown_without_sympy(program, clone):
+def test_kept_verdicts_are_shown_without_sympy(program, clone, tmp_path, monkeypatch):
+    monkeypatch.setenv("SINGIMPACT_CACHE", str(tmp_path))  # a test of a changed copy may write over a verdict elsewhere
     for _ in range(2):  # the first run keeps the verdicts
         command = [sys.executable, "-c", program + LOADED]
         found = subprocess.run(command, cwd=clone, capture_output=True, text=True, check=True)
