@@ -20,7 +20,6 @@ from pathlib import Path
 from random import Random
 from typing import Any
 
-os.environ["SINGIMPACT_CACHE"] = "off"  # what others compiled would make an ordinary flight a fast one
 sys.path[:0] = [str(Path(__file__).parents[3]), str(Path(__file__).parents[2])]
 
 
@@ -176,6 +175,7 @@ def main() -> int:
     if options.show is not None:
         print(model(options.seed, options.show))
         return 0
+    os.environ["SINGIMPACT_CACHE"] = "off"  # what others compiled would make an ordinary flight a fast one
     prepare()
     start, found = time.monotonic(), []
     numbers = range(options.models) if options.only is None else options.only
