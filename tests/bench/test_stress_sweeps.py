@@ -41,6 +41,7 @@ NO_NUMBER |= {
     "manifold",
     "homoclinic_points",
     "border_orbits",
+    "animate",
     "explore",
     "figure",
     "plot",
