@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from singimpact.inputs import InputError
-from singimpact.progress import ProgressLine
 from singimpact.store import folder
 
 if TYPE_CHECKING:
@@ -80,9 +78,7 @@ def _derivations(names: tuple[str, ...], form: str, output: str | None) -> None:
     from singimpact.paper.sections.stored_sections import kept_sections, marks_of
 
     derived = kept_sections(names)
-    with ProgressLine() as line:
-        done = iter(range(1, sys.maxsize))
-        marks = marks_of(derived, lambda claim, _, total: line.show(next(done), total, claim.id))
+    marks = marks_of(derived)
     if output is None:
         click.echo(as_text(derived, marks, form), nl=False)
     else:

@@ -1,13 +1,11 @@
 """`singimpact errata`: misprints of the paper, their corrections, and the reasons."""
 
-import sys
 from pathlib import Path
 
 import click
 
 from singimpact.cli.output import as_json_text, emit
 from singimpact.inputs import InputError
-from singimpact.progress import ProgressLine
 from singimpact.store import require_writable, written
 
 FORMATS = ("text", "markdown", "latex", "pdf", "json")
@@ -28,9 +26,7 @@ def command(form: str, as_json: bool, output: str | None) -> None:
         raise InputError("--format pdf goes to a file only: give its name with -o")
     if output is not None:
         require_writable(output)
-    with ProgressLine() as line:
-        done = iter(range(1, sys.maxsize))
-        misprints = errata(lambda claim, _, total: line.show(next(done), total, claim.id))
+    misprints = errata()
     if form == "pdf":
         _write_pdf(misprints.latex(), str(output))
     elif form == "json":

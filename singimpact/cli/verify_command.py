@@ -9,7 +9,6 @@ import click
 
 from singimpact.cli.group import LINEAR
 from singimpact.cli.output import as_json_text, emit, output_options
-from singimpact.progress import ProgressLine
 
 COLOURS = {
     "proved": "green",
@@ -49,13 +48,7 @@ def command(
     """
     from singimpact.paper.claims.verdicts import verify
 
-    with ProgressLine(delay=0.2) as line:
-        done = iter(range(1, sys.maxsize))
-        verdicts = verify(
-            ids or None,
-            on_start=lambda claim, _, total: line.show(next(done), total, f"{claim.id}  {claim.title}"),
-            beyond=beyond,
-        )
+    verdicts = verify(ids or None, beyond=beyond)
     if certificates is not None:
         verdicts.save_certificates(certificates)
     if as_json:

@@ -24,6 +24,7 @@ from singimpact.algebra.checking import accepts
 from singimpact.cache import source_digest
 from singimpact.paper.claims.claim import KINDS, Claim, Trial, Verdict
 from singimpact.paper.claims.index import CLAIMS, INDEX, Entry, entry_of
+from singimpact.progress import ProgressLine
 from singimpact.store import cache_folder
 
 # The key of a claim, and its kept verdict.
@@ -184,24 +185,28 @@ def run(
     Parameters
     ----------
     claims : entries as `select` returns them, whose claims are built when they are decided; or claims themselves.
-    on_start, on_end : called with the entry or claim, or with its verdict; its index; the number of claims.
+    on_start, on_end : called with the entry or claim, or with its verdict; its index; the number of claims. Without
+        `on_start` long work shows a line of progress.
     cached : use verdicts cached from earlier runs while nothing they depend on has changed, and keep new ones.  A claim
         that is given itself is always decided.
     """
     chosen = list(claims)
     done: dict[str, Verdict] = {}
     keys: dict[str, str] = {}
-    for index, claim in enumerate(chosen):
-        if on_start is not None:
-            on_start(claim, index, len(chosen))
-        if isinstance(claim, Claim):
-            done[claim.id] = _decided(claim, done)
-        elif cached:
-            done[claim.id] = _recalled(claim, done, keys)
-        else:
-            done[claim.id] = _decided(CLAIMS[claim.id], done)
-        if on_end is not None:
-            on_end(done[claim.id], index, len(chosen))
+    with ProgressLine() as line:
+        for index, claim in enumerate(chosen):
+            if on_start is not None:
+                on_start(claim, index, len(chosen))
+            else:
+                line.show(index, len(chosen), f"{claim.id}  {claim.title}")
+            if isinstance(claim, Claim):
+                done[claim.id] = _decided(claim, done)
+            elif cached:
+                done[claim.id] = _recalled(claim, done, keys)
+            else:
+                done[claim.id] = _decided(CLAIMS[claim.id], done)
+            if on_end is not None:
+                on_end(done[claim.id], index, len(chosen))
     return list(done.values())
 
 

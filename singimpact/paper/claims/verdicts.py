@@ -16,7 +16,6 @@ from singimpact.certificates.claims_checker import SCHEMA, digest_of, file_of
 from singimpact.inputs import checked_keywords
 from singimpact.notebook import table
 from singimpact.paper.claims.claim import MODULO
-from singimpact.progress import ProgressLine
 from singimpact.store import folder, write_text
 
 if TYPE_CHECKING:
@@ -183,9 +182,7 @@ def verify(
 
         wanted = [*(wanted or ()), *BEYOND]
     claims = select(wanted)
-    with ProgressLine() as line:
-        show = on_start or (lambda claim, index, total: line.show(index, total, claim.id))
-        return VerdictTable(claims, run(claims, on_start=show, cached=True))
+    return VerdictTable(claims, run(claims, on_start=on_start, cached=True))
 
 
 @dataclass(frozen=True, repr=False)

@@ -15,7 +15,6 @@ from singimpact.documents.rendering import latex_text, latex_words, markdown_tex
 from singimpact.inputs import checked_keywords
 from singimpact.paper.sections.remarks import GRADES, PLURALS, Remark, remark_on
 from singimpact.paper.sections.stored_sections import kept_legend
-from singimpact.progress import ProgressLine
 
 if TYPE_CHECKING:
     from singimpact.paper.claims.claim import Claim, Verdict
@@ -390,9 +389,7 @@ def errata(on_start: Callable[[Entry | Claim, int, int], None] | None = None) ->
     from singimpact.paper.claims import run, select
 
     claims = select()
-    with ProgressLine() as line:
-        show = on_start or (lambda claim, index, total: line.show(index, total, claim.id))
-        verdicts = {verdict.id: verdict for verdict in run(claims, on_start=show, cached=True)}
+    verdicts = {verdict.id: verdict for verdict in run(claims, on_start=on_start, cached=True)}
     entries = []
     for verdict in verdicts.values():
         if verdict.kind == "corrected":

@@ -1,6 +1,6 @@
 """Derivations and the errata's legend, kept in the user's cache folder under their source; marks of what they show."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 
 from singimpact import cache
 from singimpact.documents.document_steps import Mark, Section, Step, claims_of
@@ -87,7 +87,7 @@ def kept_legend() -> tuple[str, ...]:
 # The verdicts of what sections show, as marks beside their equations.
 
 
-def marks_of(shown: Iterable[Section], on_start: Callable[..., None] | None = None) -> dict[str, Mark]:
+def marks_of(shown: Iterable[Section]) -> dict[str, Mark]:
     """Claim id -> its mark, for every claim that sections show; a kept verdict is not computed again."""
     ids = claims_of(shown)
     if not ids:
@@ -96,5 +96,5 @@ def marks_of(shown: Iterable[Section], on_start: Callable[..., None] | None = No
 
     return {
         verdict.id: Mark(verdict.kind, verdict.worth, verdict.printed if verdict.corrected else "")
-        for verdict in run(select(ids), on_start=on_start, cached=True)
+        for verdict in run(select(ids), cached=True)
     }

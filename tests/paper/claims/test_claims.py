@@ -33,6 +33,7 @@ from singimpact.paper import (
 )
 from singimpact.paper.claims.sections import section6, section6_negative
 from singimpact.paper.routes import unfolding
+from singimpact.progress import ProgressLine
 
 MISPRINTED = {
     "e:phi",
@@ -136,6 +137,20 @@ def test_what_a_verifier_uses_is_named(name):
     """From what ran: each equation it derived from is among what the claim rests on, directly or through others."""
     below = {claim.id for claim in select([name])}
     assert _used(CLAIMS[name]) <= below | PART_OF_IT.get(name, set())
+
+
+def test_a_run_shows_its_progress_unless_the_caller_does(monkeypatch):
+    shown = []
+
+    class Line(ProgressLine):
+        def show(self, done, total, text):
+            shown.append((done, total, text.split()[0]))
+
+    monkeypatch.setattr("singimpact.paper.claims.engine.ProgressLine", Line)
+    run(select(["e:acc"]), cached=True)
+    assert shown == [(0, 2, "e:yeq"), (1, 2, "e:acc")]
+    run(select(["e:acc"]), on_start=lambda *_: None, cached=True)
+    assert len(shown) == 2
 
 
 def test_selection_brings_what_it_rests_on():
