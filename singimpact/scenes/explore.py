@@ -17,7 +17,7 @@ import numpy as np
 
 from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.expressions import Expression, names_in, negate, number, substitute
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import Array, as_float
 from singimpact.codegen import radii
 from singimpact.codegen.javascript import formula, translated
 from singimpact.codegen.scalar import scalar
@@ -42,7 +42,7 @@ CURVES = {
     "": ("orbit", "impacts of the orbit"),
 }
 """Curves of a frame, with the pen of each and its words in the legend."""
-DIGITS = 6  # of the coordinates in the page: below a hundredth of a pixel
+PARTS_OF_A_WINDOW = 40_000  # in which the page has coordinates: below a hundredth of a pixel
 PARTS = Path(__file__).with_name("page")
 METHOD = (
     "Orbits are computed in this page, in double precision, with the Taylor method of the package for this f and g. "
@@ -156,12 +156,20 @@ def _film(film: ClearanceFilm) -> dict[str, Any]:
     here = as_float(film.model.clearance)
     start = int(np.argmin([abs(place - here) for place in places]))
     own = start if places[start] == here else None
-    return {"swan": swan, "start": start, "own": own, "frames": [_frame(frame) for frame in film.frames]}
+    return {
+        "swan": swan,
+        "start": start,
+        "own": own,
+        "parts": PARTS_OF_A_WINDOW,
+        "frames": [_frame(frame) for frame in film.frames],
+    }
 
 
 def _frame(frame: ClearanceFrame) -> dict[str, Any]:
+    heights = {"Z": frame.view.t, "H": frame.view.t}
     curves = {
-        CURVES[name][0]: [_short(curve.points.ravel()) for curve in parts] for name, parts in frame.curves.items()
+        CURVES[name][0]: [_steps(curve.points, frame.view.tau, heights.get(name, frame.view.v)) for curve in parts]
+        for name, parts in frame.curves.items()
     }
     none = [CURVES[name][0] for name in ("Z", "H", "P") if not frame.curves[name]]
     empty = f"At this clearance the window has no {' and no '.join(none)}." if none else ""
@@ -176,9 +184,12 @@ def _frame(frame: ClearanceFrame) -> dict[str, Any]:
     }
 
 
-def _short(values: Any) -> list[float]:
-    """A few digits."""
-    return [float(f"{value:.{DIGITS}g}") for value in values.tolist()]
+def _steps(points: Array, tau: tuple[float, float], up: tuple[float, float]) -> list[int]:
+    """Steps from each point to the next, the first from the lower ends, in parts of the window: few digits each."""
+    low, high = np.array([tau, up]).T
+    places = np.rint((points - low) / (high - low) * PARTS_OF_A_WINDOW).astype(int)
+    steps: list[int] = np.diff(places, axis=0, prepend=[[0, 0]]).ravel().tolist()
+    return steps
 
 
 # A model as JavaScript: the kernels that fly it in a browser, its recurrence, and its numbers.

@@ -112,6 +112,18 @@ function window_now() {
   return { tau: [middle - turn / 2, middle + turn / 2], t: own.t, v: [-0.08 * most, 1.08 * most] };
 }
 
+// A curve of this place as [x, y, x, y, ...]: the page has the steps between its points, in parts of the window.
+function stored(name) {
+  const own = frame(), ends = [own.tau, name === "Z" || name === "H" ? own.t : own.v];
+  return own.curves[name].map((steps) => {
+    const place = [0, 0];
+    return steps.map((step, n) => {
+      const [low, high] = ends[n % 2];
+      return low + (place[n % 2] += step) * (high - low) / FILM.parts;
+    });
+  });
+}
+
 function show() {
   const own = frame(), changed = moved(), view = window_now(), side = (wide) => wide < 460 ? 0.86 : 0.74;
   turn_now = period();
@@ -122,7 +134,7 @@ function show() {
   const rest = made("line", { x1: surface.box.left, x2: surface.box.right, y1: surface.y(0), y2: surface.y(0), stroke: colours().axis });
   surface.inside.append(rest);
   const fresh = changed.length ? sketched(fly(), own, 160, 161) : null;
-  const curve = (name) => fresh ? (fresh[name] || []) : own.curves[name];
+  const curve = (name) => fresh ? (fresh[name] || []) : stored(name);
   for (const name of ["Z", "H"]) draw(surface, name, curve(name));
   for (const name of ["P", "jump"]) draw(states, name, curve(name));
   draw(states, "gamma", state.r === MODEL.r ? curve("gamma") : []);
