@@ -156,13 +156,8 @@ def _film(film: ClearanceFilm) -> dict[str, Any]:
     here = as_float(film.model.clearance)
     start = int(np.argmin([abs(place - here) for place in places]))
     own = start if places[start] == here else None
-    return {
-        "swan": swan,
-        "start": start,
-        "own": own,
-        "parts": PARTS_OF_A_WINDOW,
-        "frames": [_frame(frame) for frame in film.frames],
-    }
+    frames = [_frame(frame) for frame in film.frames]
+    return {"swan": swan, "start": start, "own": own, "parts": PARTS_OF_A_WINDOW, "frames": frames}
 
 
 def _frame(frame: ClearanceFrame) -> dict[str, Any]:

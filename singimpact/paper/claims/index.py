@@ -12,6 +12,7 @@ from dataclasses import asdict, dataclass
 from functools import cache
 from html import escape
 from pathlib import Path
+from typing import Any
 
 from singimpact.inputs import InputError, unknown
 from singimpact.paper.claims import beyond
@@ -59,16 +60,18 @@ def entry_of(name: str) -> Entry:
     if name not in INDEX and name not in BEYOND:
         number = re.fullmatch(r"(?:eq(?:uation)?\.?)? *\(?(\d+)\)?", str(name))
         if number:
-            held = ", ".join(_of_equation(int(number[1]))) or "none; si.claims lists all"
+            about = [place["id"] for place in places_in_paper() if int(number[1]) in place["equations"]]
+            held = ", ".join(about) or "none; si.claims lists all"
             raise InputError(f"claims have ids, not numbers: about equation ({number[1]}) of the paper there is {held}")
         raise unknown("claim", name, [*INDEX, *BEYOND])
     return INDEX[name] if name in INDEX else BEYOND[name]
 
 
-def _of_equation(number: int) -> list[str]:
-    """The claims about a numbered equation of the paper."""
-    places = json.loads((Path(__file__).parents[1] / "sections" / "places.json").read_text(encoding="utf-8"))
-    return [place["id"] for place in places if number in place["equations"]]
+@cache
+def places_in_paper() -> list[dict[str, Any]]:
+    """Where each claim stands in the paper: its id, page, line, numbers of equations and statement."""
+    places: list[dict[str, Any]] = json.loads(Path(__file__).with_name("places.json").read_text(encoding="utf-8"))
+    return places
 
 
 def entries_of(file: str) -> tuple[Entry, ...]:

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from functools import cache
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
 from singimpact.documents.rendering import latex_text, latex_words, markdown_text, markdown_words, wrapping
 from singimpact.inputs import checked_keywords
+from singimpact.paper.claims.index import places_in_paper
 from singimpact.paper.sections.remarks import GRADES, PLURALS, Remark, remark_on
 from singimpact.paper.sections.stored_sections import kept_legend
 
@@ -61,9 +60,9 @@ class Place:
 
 @cache
 def _stored_places() -> dict[str, Place]:
-    lines = json.loads(Path(__file__).with_name("places.json").read_text(encoding="utf-8"))
     return {
-        line["id"]: Place(line["page"], line["line"], tuple(line["equations"]), line["statement"]) for line in lines
+        line["id"]: Place(line["page"], line["line"], tuple(line["equations"]), line["statement"])
+        for line in places_in_paper()
     }
 
 

@@ -99,7 +99,12 @@ def test_the_models_own_clearance_is_a_place_of_the_slider():
     places = [frame.clearance for frame in far.frames]
     assert {0.1, 1.0} <= set(places)
     assert places == sorted(places)
-    assert len(explore_page(far)) < 400_000
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["duffing_friction", "shaw_holmes", "pendulum", "chin"])
+def test_a_page_as_it_is_asked_for_has_400_kilobytes_at_most(name):
+    assert len(si.models[name]().explore().html.encode()) < 400_000
 
 
 def test_windows_follow_the_swan(film):
