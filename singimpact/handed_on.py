@@ -1,4 +1,4 @@
-"""Names that a room hands on, each loaded from its file when it is first used.
+"""Names that a room hands on, each loaded from its file when it is first used, and functions as methods (`Study`).
 
 A room's own files import one another by file; whoever stands outside (the public names, the tests) asks the room.
 """

@@ -58,7 +58,7 @@ def swan_points(
     if over != "clearance":
         raise refuse("over", over, "'clearance'")
     model = ImpactOscillator(f, g, 0, 1, parameters)
-    return swan_points_over_clearance(model, None if between is None else clearances(between))
+    return swan_points_over_clearance(model, None if between is None else interval(between))
 
 
 def _bound(end: Any) -> Fraction:
@@ -67,12 +67,12 @@ def _bound(end: Any) -> Fraction:
     return Fraction(as_float(tree)) if exact is None else exact
 
 
-def clearances(between: Any) -> tuple[Fraction, Fraction]:
-    """Two clearances, the lower first, as exact fractions.
+def interval(between: Any) -> tuple[Fraction, Fraction]:
+    """Two numbers, the lower first, as exact fractions.
 
     Examples
     --------
-    >>> clearances(("-1/3", "0.5"))
+    >>> interval(("-1/3", "0.5"))
     (Fraction(-1, 3), Fraction(1, 2))
     """
     try:
@@ -204,7 +204,7 @@ def classify(osc: Oscillator, window: Any = None, between: Any = None) -> Classi
     from singimpact.surface.classification import classify
 
     tau, t = (None, None) if window is None else _two_ends(window, "((tau_low, tau_high), (t_low, t_high))")
-    return classify(osc, tau, t, None if between is None else clearances(between))
+    return classify(osc, tau, t, None if between is None else interval(between))
 
 
 @checked_keywords
@@ -248,7 +248,6 @@ def grown_gamma(osc: Oscillator, window: Any = None, tau: Any = None) -> list[Cu
 
 def _of_models(method: Callable[P, T]) -> Callable[P, T]:
     """A method of the model as a function, whose first argument is checked; documented at the method."""
-
     takes = signature(method)
     first, *others = takes.parameters.values()
     takes = takes.replace(parameters=[first.replace(name="osc"), *others])

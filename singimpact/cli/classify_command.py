@@ -60,10 +60,10 @@ def command(
         raise InputError(f"--over {over} needs its ends: --between LOW HIGH")
     if orbits is not None and over is None:
         raise InputError("--orbits needs the number that is varied: --over NAME --between LOW HIGH")
-    from singimpact.studies import clearances
+    from singimpact.studies import interval
     from singimpact.surface.classification import classify
 
-    swans_between = clearances(between) if between is not None and over in (None, "clearance") else None
+    swans_between = interval(between) if between is not None and over in (None, "clearance") else None
     points = classify(oscillator, window_tau, window_t, swans_between)
     changes = None if over is None else _transitions(oscillator, over, between, points.t, orbits)
     if as_json:

@@ -14,6 +14,7 @@ from singimpact.paper.figures.registry import ACCEPTED
 from singimpact.progress import ProgressLine
 from singimpact.store import folder, require_writable, write_text
 
+OTHER_PICTURES = (".gif", ".jpg", ".jpeg", ".eps", ".ps", ".tif", ".tiff", ".webp", ".bmp")  # no folder is meant
 DPI = 200  # of a PNG: figures are as small as they are printed
 
 
@@ -75,9 +76,10 @@ def _data(number: int | str) -> Any:
 
 def _targets(output: str, numbers: list[int | str], kind: str) -> list[Path]:
     """Where each figure goes; the folder is there."""
-    if Path(output).suffix and Path(output).suffix.lower() not in PICTURES and not Path(output).is_dir():
+    suffix = Path(output).suffix.lower()
+    if suffix in OTHER_PICTURES and not Path(output).is_dir():
         raise refuse("output", output, "a folder, or for one figure a file name ending in .png, .pdf or .svg")
-    if Path(output).suffix.lower() not in PICTURES:
+    if suffix not in PICTURES:
         return [folder(output) / f"figure{str(number).zfill(2)}.{kind}" for number in numbers]
     if len(numbers) > 1:
         raise refuse("output", output, "a folder: these are several figures")

@@ -17,7 +17,7 @@ from singimpact.dynamics.invariant_arcs import grown_gamma
 from singimpact.inputs import refuse
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration
-from singimpact.studies import clearances
+from singimpact.studies import interval
 from singimpact.surface.classification import default_window
 from singimpact.surface.curve import Curve, Window
 from singimpact.surface.impact_surface import ImpactSurface
@@ -149,7 +149,7 @@ def clearance_film(
         raise refuse("model", model, "an ImpactOscillator")
     if isinstance(steps, bool) or not isinstance(steps, int) or not 2 <= steps <= 1001:
         raise refuse("steps", steps, "a whole number from 2 to 1001")
-    ends = None if between is None else clearances(between)
+    ends = None if between is None else interval(between)
     swan = _nearest_swan(model, ends)
     views = _across(model, ends, steps) if swan is None else _through(swan, ends, steps)
     surfaces, frames = [], []

@@ -19,7 +19,7 @@ from singimpact.dynamics.sampling import Section
 from singimpact.flights.flight_path import path
 from singimpact.inputs import InputError, checked_keywords, refuse, whole
 from singimpact.store import written
-from singimpact.studies import clearances
+from singimpact.studies import interval
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -365,7 +365,7 @@ def animate(orbit: Orbit, between: tuple[float, float] | None = None, frames: in
     if not isinstance(orbit, Orbit):
         raise refuse("orbit", type(orbit).__name__, "an orbit of `osc.orbit`")
     first, last = float(orbit.tau[0]), max(shown_end(orbit, STYLE), orbit.end)
-    begin, end = (_since(orbit), shown_end(orbit, STYLE)) if between is None else map(float, clearances(between))
+    begin, end = (_since(orbit), shown_end(orbit, STYLE)) if between is None else map(float, interval(between))
     if not first <= begin < end <= last:
         raise refuse("between", between, f"two times from {first:.6g} to {last:.6g}")
     times = np.linspace(begin, end, whole("frames", frames, 2, 10_000))

@@ -46,6 +46,7 @@ def test_a_study_is_a_function_and_a_method_documented_once():
     assert len(found) >= 15
     for name, kind in found.items():
         assert getattr(kind, name).__doc__ == getattr(si, name).__doc__ != None, name  # noqa: E711
+    assert type(orbits[0]).branch is si.branch
     method, function = (
         orbits[0].oscillator.lyapunov(0.3, 0.5, impacts=50),
         si.lyapunov(orbits[0].oscillator, 0.3, 0.5, impacts=50),

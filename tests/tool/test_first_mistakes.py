@@ -63,3 +63,5 @@ def test_a_picture_that_is_no_figure(singimpact, tmp_path):
     assert refused.exit_code == 2
     assert "a folder, or for one figure a file name ending in .png, .pdf or .svg" in refused.stderr
     assert list(tmp_path.iterdir()) == []
+    assert singimpact("figure", "1", "-o", tmp_path / "pictures.v1.2").exit_code == 0  # a folder may have a dot
+    assert (tmp_path / "pictures.v1.2" / "figure01.png").is_file()

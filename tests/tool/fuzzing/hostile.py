@@ -30,12 +30,13 @@ class Bounds:
     Parameters
     ----------
     seconds : of CPU for one call, always allowed; the first one makes the model too. ordinary : what is allowed beyond
-        them, in calls of `ORDINARY` made right before and after. memory : bytes of the process. killed : seconds of CPU
+        them, in calls of `ORDINARY` made right before and after, but no more than `most` of a usual machine. memory : bytes of the process. killed : seconds of CPU
         after which the process is ended. address_space : bytes beyond which the process has no memory.
     """
 
     seconds: float = 2.0
     ordinary: float = 2.5
+    most: float = 4.0
     memory: int = 500 * 2**20
     killed: int = 20
     address_space: int = 2**31
@@ -123,11 +124,13 @@ def flown(number: int, fields: dict[str, Any]) -> Flown:
 
 def _beside_ordinary(run: Flown, fields: dict[str, Any]) -> Flown:
     """The model flown up to three times more, until a run takes no longer than `Bounds.ordinary` ordinary flights."""
+    from slowness import slowness
+
     for _ in range(3):
         before = flown(0, ORDINARY)
         run = flown(run.number, fields)
-        ordinary = max(before.seconds, flown(0, ORDINARY).seconds)
-        run = replace(run, allowed=max(Bounds.seconds, Bounds.ordinary * ordinary))
+        ordinary = Bounds.ordinary * max(before.seconds, flown(0, ORDINARY).seconds)
+        run = replace(run, allowed=max(Bounds.seconds, min(ordinary, Bounds.most * slowness())))
         if run.seconds <= run.allowed:
             break
     return run
