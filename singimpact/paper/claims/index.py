@@ -60,7 +60,7 @@ def entry_of(name: str) -> Entry:
     if name not in INDEX and name not in BEYOND:
         number = re.fullmatch(r"(?:eq(?:uation)?\.?)? *\(?(\d+)\)?", str(name))
         if number:
-            about = [place["id"] for place in places_in_paper() if int(number[1]) in place["equations"]]
+            about = [claim["id"] for claim in places_in_paper() if int(number[1]) in claim["equations"]]
             held = ", ".join(about) or "none; si.claims lists all"
             raise InputError(f"claims have ids, not numbers: about equation ({number[1]}) of the paper there is {held}")
         raise unknown("claim", name, [*INDEX, *BEYOND])
