@@ -92,6 +92,6 @@ def _numbers(which: str) -> list[int | str]:
         return [*FIGURES] if which == "all" else [*BEYOND]
     if which in BEYOND:
         return [which]
-    if not which.isdigit() or int(which) not in FIGURES:
+    if which not in map(str, FIGURES):
         raise refuse("figure", which, f"{ACCEPTED}, or all, or beyond")
     return [int(which)]

@@ -23,7 +23,8 @@ def site(request, tmp_path_factory):
     command = [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-q", "-b", "html", "docs", str(place)]
     done = subprocess.run(command, cwd=request.config.rootpath, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
-    assert done.stderr == ""
+    words = [line for line in done.stderr.splitlines() if not line.startswith("singimpact: ")]  # of what takes long
+    assert words == []
     return place
 
 

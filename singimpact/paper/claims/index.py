@@ -58,7 +58,7 @@ def entry_of(name: str) -> Entry:
     InputError : an unknown id; the nearest known ones are named.
     """
     if name not in INDEX and name not in BEYOND:
-        number = re.fullmatch(r"(?:eq(?:uation)?\.?)? *\(?(\d+)\)?", str(name))
+        number = re.fullmatch(r"(?:eq(?:uation)?\.?)? *\(?(\d{1,3})\)?", str(name))
         if number:
             about = [claim["id"] for claim in places_in_paper() if int(number[1]) in claim["equations"]]
             held = ", ".join(about) or "none; si.claims lists all"

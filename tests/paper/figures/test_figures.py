@@ -164,7 +164,7 @@ def test_the_command(tmp_path):
     assert set("ABCDE") <= {letter.strip("$") for letter in data["panels"][0]["points"]}
 
 
-@pytest.mark.parametrize("wrong", [0, 18, "x", True, 2.5])
+@pytest.mark.parametrize("wrong", [0, 18, "x", True, 2.5, "²", "1" * 5000])
 def test_no_such_figure(wrong):
     with pytest.raises(InputError, match="a number from 1 to 17, or B1 to B9"):
         si.figure(wrong)

@@ -11,6 +11,7 @@ from singimpact import InputError, Status
 from singimpact.algebra import float_array, parse
 from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.oscillator import fields_of
+from singimpact.paper import select
 from singimpact.scenes import Scene
 from singimpact.theory import swan
 
@@ -126,4 +127,10 @@ def test_a_number_of_many_digits_is_written():
 def test_a_sign_that_is_not_decided_is_told_short():
     with pytest.raises(InputError, match="is not decided") as found:
         ImpactOscillator("x", "cos(sqrt(sin(1e3000))*t)", "1", "1/2")
+    assert len(str(found.value)) < 500
+
+
+def test_a_claim_whose_name_is_a_number_of_many_digits():
+    with pytest.raises(InputError, match="unknown claim") as found:
+        select(["1" * 5000])
     assert len(str(found.value)) < 500
