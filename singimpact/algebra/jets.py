@@ -379,25 +379,6 @@ def implicit(equation: Jet, variable: str) -> Jet:
     return inner[index]
 
 
-def derivation(jet: Jet, images: Mapping[str, Jet]) -> Jet:
-    """Sum of the derivatives by each variable times its image, to the order that is known then.
-
-    Examples
-    --------
-    >>> from singimpact.algebra.rings import EXACT
-    >>> x, y = JetSpace(("x", "y"), 3, EXACT).generators()
-    >>> print(derivation(x * x * y, {"x": y, "y": x}))
-    x**3 + (2)*x*y**2
-    """
-    weights = dict(zip(jet.space.variables, jet.space.weights, strict=True))
-    order = min(jet.space.order - weights[name] + min(image.parts, default=0) for name, image in images.items())
-    space = jet.space.to_order(min(order, *(image.space.order for image in images.values())))
-    total = space.jet({})
-    for name, image in images.items():
-        total = total + Jet(space, jet.derivative(name).parts) * Jet(space, image.parts)
-    return total
-
-
 def blow_up(jet: Jet, s: str = "s", m: str = "m") -> Jet:
     """A jet in two variables of weight 1 in the chart (s, s m): graded by s alone.
 

@@ -258,8 +258,25 @@ class LongSum(sympy.Add):
 
     __repr__ = __str__
 
+    def _latex(self, printer: object) -> str:  # noqa: ARG002
+        """The formula that `sympy.latex` writes, derivatives of a with primes."""
+        letters = {symbol: primed(symbol.name) for symbol in self.free_symbols if symbol.name.startswith("a_d")}
+        return str(sympy.latex(sympy.Add._from_args(self.args), symbol_names=letters))
+
 
 LongSum.__name__ = "Add"  # sympy sorts, hashes and prints an object by the name of its class
+
+
+def primed(name: str) -> str:
+    """LaTeX of a derivative of a, whose name in source is a_d1, a_d2, ...
+
+    Examples
+    --------
+    >>> primed("a_d2"), primed("a_d4")
+    ("a''", 'a^{(4)}')
+    """
+    order = int(name[3:])
+    return "a" + "'" * order if order < 4 else f"a^{{({order})}}"
 
 
 MARK = chr(0x10FFFF)  # a name that begins with it sorts behind all others

@@ -44,7 +44,8 @@ def command(
 ) -> None:
     """Write the derivations: steps in order, each equation with its label and the verdict of its claim.
 
-    A SECTION is a number (4), a name (section4) or a subject (tangency); the default is all sections.
+    A SECTION is a number (4), a name (section4) or a subject (tangency); the default is all sections. The meanings of
+    the letters follow them; the section notation prints them alone.
     LaTeX files are one for each section, and derivations.tex, which includes them.
     With --order or --model the series v_c, gamma and more are written instead, in any format. The formats sympy and
     numpy always write series. The numpy file of a model holds tau_* and the radius in which each series is accurate.
@@ -108,11 +109,10 @@ def _series(request: SeriesRequest, form: str, output: str | None) -> None:
         if output is None:
             click.echo(text, nl=False)
             return
-        name = "series.json" if form == "json" else f"series_{form}.py"
-        with written(Path(output) / name) as draft:
+        with written(Path(output) / ("series.json" if form == "json" else f"series_{form}.py")) as draft:
             draft.write_bytes(text.encode())
         return
-    document = [NOTATION, series_section(request)]
+    document = [series_section(request), NOTATION]
     if output is None:
         click.echo(as_text(document, {}, form), nl=False)
     else:

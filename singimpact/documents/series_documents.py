@@ -28,7 +28,7 @@ from singimpact.theory.plane_forms import HIGHEST, HIGHEST_NUMBERS, FoldForm
 from singimpact.theory.power_series import TRUST, PowerSeries
 
 NAMES = {0: "generic", 1: "tangency", 2: "swan"}
-SIGN = {1: "a' > 0", 2: "a'' < 0"}  # where gamma ends
+POINTS = ("a regular point", "a tangency point with $a' > 0$", "a swan point with $a'' < 0$")  # where gamma ends
 VALID = 1e-12  # the error that `valid` of a series allows
 DIGITS_BITS = 160  # bits that hold 30 digits of tau_*
 PIECE = 1800  # characters of LaTeX in one displayed equation, at most about half a page
@@ -228,9 +228,9 @@ def _title(request: SeriesRequest) -> str:
     lines = [f"Series of {request.model!r}.", ""]
     for j in request.contact_orders():
         if (where := request.point(j)) is not None:
-            written = f" = {where.exact}" if where.exact is not None else ""
-            kind = "a regular point" if j == 0 else f"a {NAMES[j]} point with {SIGN[j]}"
-            lines.append(f"TAU_STAR[{NAMES[j]!r}]: tau_*{written} = {_points(request)[NAMES[j]]}, {kind}.")
+            name, exact = NAMES[j], f" = {where.exact}" if where.exact is not None else ""
+            tau = f"TAU_STAR[{name!r}]: tau_*{exact} = {_points(request)[name]}"
+            lines.append(f"{tau}, {POINTS[j]}.".replace("$", ""))
     lines += [
         "sigma = tau - tau_* is the phase of a launch from that point, t the flight time, v_c the launch velocity.",
         f"VALID_WITHIN: each function is accurate to {VALID:g} for |sigma| and |t| up to this radius, relative to its",
@@ -271,14 +271,19 @@ def _as_data(item: Series) -> dict[str, Any]:
 
 def series_section(request: SeriesRequest) -> Section:
     """All series as a section of the derivations; a long one in several displayed equations."""
+    stars = zip(request.contact_orders(), _points(request).values(), strict=False)
+    opening = [Step(f"Expanded at $\\tau_* = {tau}$, {POINTS[j]}.") for j, tau in stars] or [_LETTERS]
+    if request.model is not None:
+        opening.insert(0, Step(f"The model is {request.model._repr_latex_()}."))
     of = "generic jets" if request.model is None else "a model"
     return Section(
-        "series", f"Series for {of}", (_LETTERS, *(step for each in series(request) for step in _steps(each)))
+        "series", f"Series for {of}", (*opening, *(step for each in series(request) for step in _steps(each)))
     )
 
 
 def series_formulas(request: SeriesRequest, name: str) -> list[str]:
-    """The series of a name, or of names that begin with it, each as one formula in LaTeX; of several, what each is.
+    """The series of a name, or of names that begin with it, each as one formula in LaTeX, below a comment where there
+    are several; of a model the comment has the point of expansion.
 
     Examples
     --------
@@ -289,7 +294,9 @@ def series_formulas(request: SeriesRequest, name: str) -> list[str]:
     chosen = [one for one in listed if one.name == name or one.name.startswith(f"{name}_")]
     if not chosen:
         raise unknown("series", name, [one.name for one in listed])
-    said = [f"% {one.says}\n" if len(chosen) > 1 else "" for one in chosen]
+    stars = {name: f", tau_* = {tau}" for name, tau in _points(request).items()}
+    points = [stars.get(one.name.rpartition("_")[2], stars.get("generic", "")) for one in chosen]
+    said = [f"% {one.says}{at}\n" if at or len(chosen) > 1 else "" for one, at in zip(chosen, points, strict=True)]
     formulas = (f"{one.left} = {' '.join(_terms(one))} + O({one.order + 1})" for one in chosen)
     return [words + formula for words, formula in zip(said, formulas, strict=True)]
 

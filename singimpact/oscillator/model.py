@@ -99,13 +99,6 @@ class Oscillator:
         """The period of g, or None when g is constant or not known to be periodic."""
         return self._period
 
-    @property
-    def structure(self) -> str:
-        """A digest of f and g alone: models that differ in parameters, clearance or restitution share it."""
-        import hashlib  # slower to load than a model is made
-
-        return hashlib.sha256(f"{self._texts[0]}|{self._texts[1]}".encode()).hexdigest()[:16]
-
     def force(self, keep: Collection[str] = ()) -> Expression:
         """f with the parameters' values put in; those in `keep` stay letters."""
         return _with_values(self, "f", frozenset(keep))

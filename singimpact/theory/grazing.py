@@ -70,6 +70,9 @@ class GrazingMap:
         """The power of D in the velocity that the impact adds, (j + 1)/(j + 2): 1/2 at an ordinary graze."""
         return Fraction(self.j + 1, self.j + 2)
 
+    def _latex(self, printer: object) -> str:  # noqa: ARG002
+        return rf"x - c = {self.x._latex()},\quad x' = {self.xdot._latex()}"
+
     def h(self, distance: Any) -> Any:
         """((j + 2)! D/a_j)^(1/(j + 2)), a time, for distances D >= 0 of a model.
 

@@ -8,6 +8,8 @@ from typing import Any
 
 import sympy
 
+from singimpact.algebra.long_sums import primed
+
 _NAMES = {"mbar": r"\bar m", "ell": r"\ell", "Qrest": r"Q_r(\sigma, \eta) + O(3)", "Qdot": "Q'"}
 _GREEK = {"kappa", "rho", "sigma", "tau", "eta", "lambda", "mu", "omega"}
 SHOWN_DIGITS = 15
@@ -72,8 +74,7 @@ def name_of(symbol: Any) -> str:
     """
     name = str(symbol)
     if name.startswith("a_d"):
-        order = int(name[3:])
-        return "a" + "'" * order if order < 4 else f"a^{{({order})}}"
+        return primed(name)
     head, _, index = name.partition("_")
     if index:
         return f"{name_of(head)}_{{{index}}}"

@@ -15,6 +15,7 @@ import sympy
 from singimpact.algebra.derivations import At, substitution
 from singimpact.algebra.gathering import gathering, remembered
 from singimpact.algebra.jets import Jet, JetSpace
+from singimpact.algebra.long_sums import LongSum
 from singimpact.algebra.polynomials import Exponents
 from singimpact.algebra.rings import EXACT, SymbolRing
 from singimpact.contact.contact import Contact, contact_order, derivative_name
@@ -69,7 +70,7 @@ class FoldForm:
         unit = sympy.Symbol(derivative_name(1)) / 6
         names = [str(letter) for letter in self.outline.free_symbols - {sigma}]
         jets = {sympy.Symbol(name): sympy.Symbol(name) * unit ** length_weight(name) for name in names}
-        return sympy.expand(unit * self.outline.subs(jets, simultaneous=True))
+        return LongSum.of(sympy.expand(unit * self.outline.subs(jets, simultaneous=True)))
 
 
 def _sheet(order: int) -> Sheet:
@@ -118,8 +119,8 @@ def fold_form(order: int) -> FoldForm:
         substitution(At(lead * T**2 + outline, {T: shown}), in_old, order=order, small=[sigma, eta])
     return FoldForm(
         order=order,
-        source=shown,
-        outline=outline,
+        source=LongSum.of(shown),
+        outline=LongSum.of(outline),
         normal=(sigma, sympy.expand(k * (sheet_.to_sympy(form.residual) + lead * eta**2))),
         residual_vanishes=form.reached,
         invertible=form.invertible and form.offset.coefficient((1, 0)) == 0,

@@ -2,7 +2,7 @@
 
 Not here: how a section becomes LaTeX or Markdown (`documents`), what is true (`paper.claims`).
 
-`NOTATION` has the meanings of the letters, which stand before any section.
+`NOTATION` has the meanings of the letters, which follow the sections.
 """
 
 from singimpact.documents.document_steps import Section, Step

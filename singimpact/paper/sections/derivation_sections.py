@@ -1,7 +1,7 @@
 """The derivations by name.
 
 `SECTIONS` names them in the paper's order, then what is beyond it, `OTHER_NAMES` by number and by subject; `NOTATION`
-goes before them.
+follows them.
 """
 
 from collections.abc import Callable, Sequence
@@ -41,11 +41,11 @@ OTHER_NAMES = {
 
 
 def sections(names: Sequence[str] = ()) -> list[Section]:
-    """The notation, then the sections named, or all, in the paper's order.
+    """The sections named, or all, in the paper's order, and the notation last.
 
     Parameters
     ----------
-    names : names, numbers or subjects: ``section4``, ``4`` and ``tangency`` are one.
+    names : names, numbers or subjects: ``section4``, ``4`` and ``tangency`` are one; ``notation`` stands alone.
 
     Raises
     ------
@@ -53,6 +53,6 @@ def sections(names: Sequence[str] = ()) -> list[Section]:
     """
     wanted = [OTHER_NAMES.get(name, name) for name in names]
     for name, name_ in zip(wanted, names, strict=True):
-        if name not in SECTIONS:
-            raise unknown("section", name_, [*SECTIONS, *OTHER_NAMES])
-    return [NOTATION, *(build() for name, build in SECTIONS.items() if not wanted or name in wanted)]
+        if name not in (*SECTIONS, NOTATION.name):
+            raise unknown("section", name_, [*SECTIONS, NOTATION.name, *OTHER_NAMES])
+    return [*(build() for name, build in SECTIONS.items() if not wanted or name in wanted), NOTATION]

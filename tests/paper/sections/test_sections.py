@@ -142,9 +142,9 @@ def test_latex_that_fails_says_where():
 
 @pytest.mark.usefixtures("demo")
 def test_command_prints_or_writes(singimpact, tmp_path):
-    assert singimpact("derive", "demo").stdout == as_latex([NOTATION, DEMO], MARKS)
+    assert singimpact("derive", "demo").stdout == as_latex([DEMO, NOTATION], MARKS)
     names = [section["name"] for section in json.loads(singimpact("derive", "--json", "demo").stdout)["sections"]]
-    assert names == ["notation", "demo"]
+    assert names == ["demo", "notation"]
     assert singimpact("derive", "demo", "--format", "markdown", "-o", tmp_path / "new").exit_code == 0
     assert (tmp_path / "new" / "demo.md").read_text() == as_markdown(DEMO, MARKS)
     assert singimpact("derive", "demo", "-o", tmp_path / "tex").exit_code == 0
@@ -163,7 +163,11 @@ def test_pdf_needs_a_folder_and_latexmk(singimpact, tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("name", ["4", "section4", "tangency"])
 def test_one_section_has_three_names(name):
-    assert [section.name for section in sections([name])] == ["notation", "section4"]
+    assert [section.name for section in sections([name])] == ["section4", "notation"]
+
+
+def test_the_notation_alone(singimpact):
+    assert singimpact("derive", "notation").stdout == as_latex([NOTATION], {})
 
 
 @pytest.mark.parametrize(("name", "nearest"), [("tangncy", "tangency"), ("section7", "section")])

@@ -200,3 +200,18 @@ def test_one_series_alone(singimpact):
     refused = singimpact("derive", "--only", "gama")
     assert refused.exit_code == 2
     assert "unknown series 'gama'" in refused.stderr
+
+
+def test_series_of_a_model_name_it_and_the_point_of_expansion(singimpact, tmp_path):
+    file = tmp_path / "model.toml"
+    file.write_text('f = "x"\ng = "cos(2*t)"\nclearance = 0.3\nrestitution = 0.5\n')
+    at = singimpact("derive", "--model", file, "--order", "3", "--format", "json").stdout
+    star = json.loads(at)["tau_star"]["tangency"]
+    assert abs(np.cos(2 * float(star)) - 0.3) < 1e-12
+    told = singimpact("derive", "--model", file, "--order", "3", "--format", "markdown").stdout
+    assert r"\cos{\left(2 t \right)}" in told.partition("Launch velocity")[0]
+    assert f"Expanded at $\\tau_* = {star}$, a tangency point with $a' > 0$." in told.partition("Launch velocity")[0]
+    assert told.index("# Series for a model") < told.index("# Notation")
+    words, formula = singimpact("derive", "--model", file, "--only", "gamma").stdout.splitlines()
+    assert words == f"% Velocity on the invariant curve at a tangency point, tau_* = {star}"
+    assert formula.startswith("v = ")

@@ -1,9 +1,12 @@
 """The printer: what is shown has the value it was given, and reads in the right order."""
 
+import re
+
 import pytest
 import sympy
 from hypothesis import given, settings, strategies as st
 
+from singimpact import theory
 from singimpact.documents import by_degree, factored, in_powers
 from singimpact.theory import latex
 
@@ -66,3 +69,29 @@ def test_a_polynomial_read_back_is_the_same(terms):
         assert sympy.expand(_read(in_powers(expression, r)) - expression) == 0
         assert sympy.expand(_read(factored(expression)) - expression) == 0
         assert sympy.expand(sum(_read(part) for part in by_degree(expression, m, t)) - expression) == 0
+
+
+@pytest.mark.parametrize(
+    "series",
+    [
+        theory.v_c(order=4, at="tangency"),
+        theory.gamma(order=5),
+        theory.fibre(order=3),
+        theory.grazing_map(order=3),
+        theory.normal_form(order=5).source,
+        theory.normal_form(order=5).outline_of_p,
+    ],
+    ids=lambda series: type(series).__name__,
+)
+def test_sympy_writes_a_series_in_the_letters_of_the_paper(series):
+    shown = sympy.latex(series)
+    assert "a''" in shown
+    assert not re.search(r"a_\{?d|PowerSeries|mathtt", shown)
+
+
+def test_a_series_is_written_by_rising_powers_up_to_where_it_is_cut():
+    shown = sympy.latex(theory.gamma(order=5))
+    powers = [shown.index(rf"\sigma^{{{n}}}") for n in (2, 3, 4, 5)]
+    assert powers == sorted(powers)
+    assert shown.endswith(r" + O(\sigma^{6})")
+    assert sympy.latex(theory.v_c(order=2, at="tangency")) == r"- \frac{a' \sigma t}{2} - \frac{a' t^{2}}{6}"
