@@ -260,7 +260,7 @@ class LongSum(sympy.Add):
 
     def _latex(self, printer: object) -> str:  # noqa: ARG002
         """The formula that `sympy.latex` writes, derivatives of a with primes."""
-        letters = {symbol: primed(symbol.name) for symbol in self.free_symbols if symbol.name.startswith("a_d")}
+        letters = {symbol: primed(str(symbol)) for symbol in self.free_symbols if str(symbol).startswith("a_d")}
         return str(sympy.latex(sympy.Add._from_args(self.args), symbol_names=letters))
 
 

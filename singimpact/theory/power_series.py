@@ -96,27 +96,25 @@ class PowerSeries:
         """The series as a sympy expression in its variable."""
         import sympy
 
-        return sympy.Add(*self._terms())
-
-    def _terms(self) -> list[object]:
-        """The terms in sympy, by rising powers."""
-        import sympy
-
         letter = sympy.Symbol(self.variable)
-        return [
-            (sympy.Float(c, self.digits) if hasattr(c, "_mpf_") and not hasattr(c, "free_symbols") else c) * letter**n
-            for n, c in sorted(self.coefficients.items())
-            if c != 0
-        ]
+        shown = {
+            n: sympy.Float(c, self.digits) if hasattr(c, "_mpf_") and not hasattr(c, "free_symbols") else c
+            for n, c in self.coefficients.items()
+        }
+        return sympy.Add(*(value * letter**power for power, value in shown.items()))
 
     def _repr_latex_(self) -> str:
         return f"${self._latex()}$"
 
     def _latex(self, printer: object = None) -> str:  # noqa: ARG002
         """The series in the paper's letters, for `sympy.latex`."""
+        import sympy
+
         from singimpact.theory.notation import joined, latex, name_of
 
-        return joined([*map(latex, self._terms()), rf"O({name_of(self.variable)}^{{{self.order + 1}}})"])
+        letter = sympy.Symbol(self.variable)
+        terms = sorted(sympy.Add.make_args(self.as_expr()), key=lambda term: term.as_coeff_exponent(letter)[1])
+        return joined([*map(latex, terms), rf"O({name_of(letter)}^{{{self.order + 1}}})"])
 
     def valid_within(self, tolerance: float) -> float:
         """A radius within which the cut series is off by at most `tolerance`, and by `tolerance` times its value.
