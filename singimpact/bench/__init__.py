@@ -18,7 +18,7 @@ _FILES = {
     "measuring": (
         "Aim Case Counted EPSILON Effort FULL Measured Method Timed condition cpu_seconds measure relative_error"
     ),
-    "page": "ABOUT COMMAND READING STRESS_ABOUT STRESS_COMMAND TITLES digest_of recorded stress_page timed_digest",
+    "page": "ABOUT COMMAND READING STRESS_ABOUT STRESS_COMMAND digest_of recorded stress_page table timed_digest",
     "problems": "Problem states values",
     "report": "exponents fitted plotted reached tables",
     "selftest.basin_pixels": "Follower row",
@@ -28,7 +28,6 @@ _FILES = {
     "selftest.responses": "derivatives rebounds",
     "selftest.truths": "balls digits fixed_steps",
     "steep_balls": "COLUMNS Flown enclosed summary",
-    "steep_cost": "last_terms",
     "steep_families": "FAMILIES Family NAMES SMOOTH STEEP",
     "steep_states": "drawn_of family_of",
     "stress.flown": "landing",

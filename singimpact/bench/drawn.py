@@ -37,7 +37,7 @@ def counted(count: int, noun: str) -> str:
     return f"{count} {noun}{'' if count == 1 else 's'}"
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=64)
 def model(family: str, restitution: float) -> ImpactOscillator:
     """The oscillator of a family, with its tables and the code that flies it."""
     if family == "duffing":

@@ -3,52 +3,36 @@
 The first line of a page has a digest of the sources that it was measured with.
 """
 
+import csv
 import hashlib
 import re
 from collections.abc import Mapping, Sequence
+from io import StringIO
 from pathlib import Path
 
-COMMAND = "singimpact bench --format page --plots docs/benchmarks -o docs/benchmarks.md"
+from singimpact.bench.measuring import Row
+from singimpact.bench.report import in_words
+
+COMMAND = "singimpact bench --format page -o docs/benchmarks.md"
 ABOUT = """# Run time against error
 
-CPU time of singimpact, and of the tools that a user would choose instead, against the error of the result. Lower and
-further left is better."""
-READING = f"""## How to read the tables
-
-What a job costs here, and what it costs with what a user would pick instead, in one run on one machine: CPU time, and
-the ratio to the first row of each case with its quartiles over interleaved rounds. *Wrong* counts answers that are off
-by more than ten times condition times $\\varepsilon$, or missing; *missed* those that are off by more than a hundredth:
-another impact, or none. A figure *to reach* stands beside the measured one, and whether it is reached is computed in
-the run. Ratios carry over to another machine, microseconds do not. This page is written by
+Twelve calls of singimpact beside what a user would take instead: heyoka (Taylor's method) and scipy (DOP853), both with
+an event, and fifty lines of numba (`singimpact/bench/peers/fixed_steps.py`: Runge-Kutta steps of a thousandth of a
+period). The time is CPU time of a state, an impact, a pixel or a value of the clearance."""
+READING = f"""The error is the median of the relative errors. A peer has its time as a multiple of that of singimpact,
+then its error; *missed* counts answers that are absent or off by more than a hundredth: another impact, or none. Errors
+are those against flights in balls. Timed calls have other states each time, with restitutions from 0.5 to 0.999 where
+the case has none of its own; a peer that is too slow for all states has the first ones. All programs run in turn, in
+one run on one machine: ratios carry over to another machine, times do not. [All numbers](benchmarks.csv), with settings
+and quartiles. This page is written by
 
 ```sh
 {COMMAND}
 ```
 
-Rows named *singimpact* call public names only, with all that Python adds; a test follows their calls. Rows named
-*kernel* time a private function. CPU time includes that of child processes. In the groups `map` and `orbit`, and where
-a case says *a call*, every timed call has other states, and restitutions go from 0.5 to 0.999; answers are judged by
-flights in balls, with condition numbers of their own, where tau counts within one period: an error by rounding
-$\\omega\\tau$ is an error. A peer that is too slow for all states has the first ones of the same states, and its row
-says how many."""
-TITLES = {
-    "map": "The impact map",
-    "orbit": "Orbits and iterates",
-    "regimes": "Hard states",
-    "chatter": "The chatter limit",
-    "threshold": "The threshold",
-    "series": "Series",
-    "fixed-points": "Fixed points",
-    "emitted": "Emitted code",
-    "figures": "Figures",
-    "growth": "How cost grows",
-    "commands": "Series in symbols and commands",
-    "sweep": "A sweep of many cases",
-    "scale": "Large arrays",
-    "branches": "Periodic orbits and their branches",
-    "start": "A new process",
-    "limit": "Figures to reach",
-}
+and `singimpact bench GROUP` measures more: how cost grows, hard states, series, new processes, large arrays."""
+PEERS = ("heyoka", "scipy", "numba")
+COLUMNS = ("case", "method", "setting", "microseconds", "ratio", "spread", "error", "wrong", "missed", "of")
 STRESS_COMMAND = "singimpact stress --format page -o docs/stress.md"
 STRESS_ABOUT = f"""# Stress: next to every bad place
 
@@ -147,40 +131,46 @@ def stress_page(tables: str) -> str:
     return f"{opening(STRESS_COMMAND, timed_digest())}\n{STRESS_ABOUT}\n\n{tables}"
 
 
-def page(sections: Sequence[tuple[str, str]], pictures: str | None) -> str:
-    """The page from groups and their tables, all pictures first.
-
-    Parameters
-    ----------
-    sections : a group and its tables as Markdown.
-    pictures : path of a picture, with `{}` for the group; without pictures None.
+def page(table: str, commit: str) -> str:
+    """The page of run times, from its table as Markdown and the commit that was measured.
 
     Examples
     --------
-    >>> written = page([("map", "| a |")], "p/{}.png")
-    >>> print(written[written.index("## Plots") : written.index("## How")])
-    ## Plots
-    <BLANKLINE>
-    **The impact map** ([table](#the-impact-map))
-    <BLANKLINE>
-    ![The impact map: time against error](p/map.png)
-    <BLANKLINE>
-    <BLANKLINE>
-    >>> print(written.partition("## Tables")[2])
-    <BLANKLINE>
-    <BLANKLINE>
-    ### The impact map
-    <BLANKLINE>
-    `singimpact bench map`
-    <BLANKLINE>
-    | a |
+    >>> "at commit `ab12`" in page("| a |", "ab12")
+    True
     """
-    plots, tables = [], []
-    for group, text in sections:
-        title = TITLES[group]
-        if pictures is not None:
-            plots.append(f"**{title}** ([table](#{title.lower().replace(' ', '-')}))")
-            plots.append(f"![{title}: time against error]({pictures.format(group)})")
-        tables += [f"### {title}", f"`singimpact bench {group}`", text]
+    plot = "![Time against error, a panel a call; lower and further left is better](benchmarks.png)"
     about = f"{opening(COMMAND, timed_digest())}\n{ABOUT}"
-    return "\n\n".join([about, *(["## Plots", *plots] if plots else []), READING, "## Tables", *tables])
+    return "\n\n".join([about, table, f"Measured at commit `{commit}`.", plot, READING])
+
+
+def table(rows: Sequence[Row]) -> tuple[list[str], list[list[str]]]:
+    """Header and cells of the page's table: a line a case, with the time and the error of its first row."""
+    cases = {case: [row for row in rows if row.case == case] for case in dict.fromkeys(row.case for row in rows)}
+    lines = [
+        [case, in_words(own.microseconds), _error(own), *(_beside(peers, name) for name in PEERS)]
+        for case, (own, *peers) in cases.items()
+    ]
+    return ["call", "time", "error", *PEERS], lines
+
+
+def _error(row: Row) -> str:
+    return "" if row.error is None else f"{row.error:.0e}"
+
+
+def _beside(rows: Sequence[Row], name: str) -> str:
+    """A peer's time as a multiple, its error, and the answers that it missed; empty where it has no row."""
+    parts = [
+        (f"{float(f'{row.ratio:.2g}'):g} times", _error(row), f"{row.missed} of {row.of} missed" if row.missed else "")
+        for row in rows
+        if row.method == name
+    ]
+    return ", ".join(filter(None, parts[0] if parts else ()))
+
+
+def as_csv(rows: Sequence[Row]) -> str:
+    """All numbers of the page as text of a csv file."""
+    text = StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerows([COLUMNS, *([getattr(row, name) for name in COLUMNS] for row in rows)])
+    return text.getvalue()

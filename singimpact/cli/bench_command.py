@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import os
+import subprocess
 import sys
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
@@ -14,7 +14,7 @@ import click
 from singimpact.cli.output import as_json_text, columns, count_option, emit, markdown, output_options, page_format, save
 from singimpact.inputs import InputError, unknown
 from singimpact.progress import ProgressLine
-from singimpact.store import folder
+from singimpact.store import folder, write_text
 
 # The tables of `singimpact bench states --family steep`.
 
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     import numpy as np
 
     from singimpact.bench.steep_balls import Enclosures, Estimate
-    from singimpact.bench.steep_cost import Cost
     from singimpact.bench.steep_digits import Pairs
     from singimpact.bench.steep_states import Row
 
@@ -41,19 +40,16 @@ class SteepStates:
 
 
 def steep_states(
-    states: int, seed: int, workers: int | None, keep: str | None, balls: tuple[int, int, int, int], costs: bool
+    states: int, seed: int, workers: int | None, keep: str | None, balls: tuple[int, int, int, int]
 ) -> SteepStates:
-    """Fly random steep states and some of them in balls; time each family.
+    """Fly random steep states and some of them in balls.
 
     Parameters
     ----------
     balls : states in balls, how many of these with `digits=20`, and how many steep and how many smooth states with
         20 and with 40 digits.
-    costs : whether families are timed.
     """
     from singimpact.bench import steep_balls, steep_digits, steep_states
-    from singimpact.bench.steep_cost import cost
-    from singimpact.bench.steep_families import FAMILIES
     from singimpact.case_pools import WorkerPool
 
     beside = None if keep is None else Path(keep).with_name(f"{Path(keep).stem}-balls.npz")
@@ -65,20 +61,17 @@ def steep_states(
             for name, count in zip(("steep", "smooth"), balls[2:], strict=True)
         }
     rows = steep_states.rows(checked)
-    timed = {family.name: cost(family) for family in FAMILIES} if costs else {}
     listed = _listed(checked, seed)
     data = {
         "families": [asdict(row) for row in rows],
         "balls": asdict(enclosures),
         "pairs": {name: asdict(pair) for name, pair in pairs.items()},
-        "cost": {name: asdict(figure) for name, figure in timed.items()},
         "listed": listed,
     }
     parts = [
         _table(rows),
         _balls(enclosures),
         *(_pairs(name, pair) for name, pair in pairs.items()),
-        _cost(timed),
         *(_lines(name, table) for name, table in listed.items()),
     ]
     return SteepStates(
@@ -172,16 +165,6 @@ def _estimate(name: str, given: Estimate | None) -> str:
     )
 
 
-def _cost(timed: dict[str, Cost]) -> str:
-    """CPU time a family, and its ratio to steps chosen by their last terms."""
-    cells = [
-        [name, f"{figure.microseconds:.1f}", f"{figure.ratio:.2f}", f"{figure.agree:.2f}"]
-        for name, figure in timed.items()
-    ]
-    note = "ratio: to steps chosen by their last two terms, in the same run, on the flights where both agree."
-    return columns(["family", "first_hit, us a state", "ratio", "agree"], cells) + "\n" + note if cells else ""
-
-
 def _listed(columns_: dict[str, np.ndarray[Any, Any]], seed: int) -> dict[str, dict[str, Any]]:
     """States of each kind that needs a look: how many, and calls that repeat some of them, or all the undecided."""
     import numpy as np
@@ -232,7 +215,7 @@ if TYPE_CHECKING:
 @click.option("--quick", is_flag=True, help="Fewer cases, states and rounds, within two minutes.")
 @click.option("--plots", metavar="DIR", help="Write a picture of time against error for each group into this folder.")
 @click.option("--picture", type=click.Choice(["png", "pdf", "svg"]), default="png", show_default=True)
-@page_format(", with the pictures of --plots")
+@page_format(", of the group public, with a .csv and a .png beside it")
 @click.option("--states", type=click.IntRange(1, 10**9), default=100_000, show_default=True, help="How many states.")
 @click.option("--seed", type=click.IntRange(0), default=0, show_default=True, help="Seed of the random states.")
 @click.option("--workers", type=click.IntRange(1, 1024), help="Processes.  [default: one for each core]")
@@ -269,9 +252,9 @@ def command(
     as_json: bool,
     output: str | None,
 ) -> None:
-    """Measure CPU times and compare them with other tools. The groups are map, orbit, regimes, chatter, threshold,
-    series, fixed-points, emitted, figures, growth, commands, sweep, scale, branches, start, limit. The default is all
-    of them (with --quick all but the last two).
+    """Measure CPU times and compare them with other tools. The groups are public, map, orbit, regimes, chatter,
+    threshold, series, fixed-points, emitted, growth, commands, sweep, scale, branches, start, limit. The default is all
+    but public, which has twelve calls of the others beside loops of numba (with --quick without the last two).
 
     The group `limit` compares public calls with a reference computation of the same run; the exit code is 1 if a ratio
     is more than half above its stored one.
@@ -279,13 +262,15 @@ def command(
     The group `states` compares random states with a slow solver of 60 digits; --states, --seed, --workers and
     --keep belong to it. With `--family steep` it compares 20 families of steep models with a solver of small fixed
     steps, and --balls of the states with ball arithmetic; --digit-pairs and --smooth-pairs states are enclosed
-    twice. --quick omits the run times. The exit code is 1 if an impact is wrong.
+    twice. The exit code is 1 if an impact is wrong.
     """
     from singimpact.bench.groups import GROUPS, usual
     from singimpact.bench.measuring import FULL, QUICK
 
     effort = QUICK if quick else FULL
-    chosen = list(dict.fromkeys(groups)) or usual(effort)
+    if form == "page" and groups:
+        raise InputError(f"--format page is not accepted with {', '.join(groups)}: the page has the group public alone")
+    chosen = ["public"] if form == "page" else list(dict.fromkeys(groups)) or usual(effort)
     for group in chosen:
         if group not in (*GROUPS, "states"):
             raise unknown("group", group, (*GROUPS, "states"))
@@ -296,10 +281,10 @@ def command(
     directory = None if plots is None else folder(plots)
     tables = _measured([group for group in chosen if group != "states"], effort)
     values = {"quick": quick, **_joined(tables)}
-    texts = _page(tables, directory, picture, output) if form == "page" else [_text(table, form) for table in tables]
+    texts = [_page(tables[0], output)] if form == "page" else [_text(table, form) for table in tables]
     wrong = _is_over(tables, store)
     if "states" in chosen and family == "steep":
-        steep = steep_states(states, seed, workers, keep, (balls, digits_checks, digit_pairs, smooth_pairs), not quick)
+        steep = steep_states(states, seed, workers, keep, (balls, digits_checks, digit_pairs, smooth_pairs))
         values["states"], wrong = steep.data, wrong or steep.wrong
         texts.append(steep.text)
     elif "states" in chosen:
@@ -347,22 +332,24 @@ def _joined(found: list[Measured]) -> dict[str, Any]:
     return {**joined, "skipped": sorted({name for part in parts for name in part["skipped"]})}
 
 
-def _page(found: list[Measured], place: Path | None, picture: str, output: str | None) -> list[str]:
-    """The page of the documentation; pictures are linked from where it is written."""
-    from singimpact.bench.page import page
+def _page(public: Measured, output: str | None) -> str:
+    """The page of the documentation; its numbers and its picture are written beside it."""
+    from singimpact.bench.page import as_csv, page, table
+    from singimpact.bench.report import plotted
 
-    link = None
-    if place is not None:
-        beside = Path(output).resolve().parent if output is not None else Path.cwd()
-        link = Path(os.path.relpath(place.resolve(), beside)).as_posix() + f"/bench-{{}}.{picture}"
-    return [page([(each.group, _text(each, "page")) for each in found], link)]
+    if output is not None:
+        write_text(Path(output).with_suffix(".csv"), as_csv(public.rows))
+        save(plotted(public), Path(output).with_suffix(".png"))
+    package = Path(__file__).parents[1]
+    told = subprocess.run(["git", "-C", package, "rev-parse", "HEAD"], capture_output=True, text=True, check=False)
+    return page(markdown(*table(public.rows)), told.stdout.strip() or "unknown")
 
 
 def _text(found: Measured, form: str) -> str:
     from singimpact.bench.report import NOTE, reached, skipped, tables
 
     laid_out = columns if form == "text" else markdown
-    heading = {"text": found.group, "markdown": f"## {found.group}"}.get(form, "")
+    heading = found.group if form == "text" else f"## {found.group}"
     parts = [heading, *(laid_out(header, cells) for header, cells in tables(found)), skipped(found)]
     if any(row.wrong is not None for row in found.rows):
         parts.append(NOTE)

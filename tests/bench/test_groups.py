@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import csv
 import json
-import re
 import sys
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
 from singimpact.bench import (
     ABOUT,
@@ -19,7 +20,6 @@ from singimpact.bench import (
     KINDS,
     READING,
     RESTITUTIONS,
-    TITLES,
     Draws,
     Effort,
     Fed,
@@ -35,11 +35,15 @@ from singimpact.bench import (
 )
 from singimpact.bench.groups import series_rows
 from singimpact.bench.measuring import QUICK
+from singimpact.bench.peers import fixed_steps
+from singimpact.bench.report import in_words
+from singimpact.cli import main
 
 SMALL = Effort(quick=True, rounds=1, least=0, once=0, fresh=1, states=1, judged=4)
-COSTLY = ("series", "figures", "commands", "start", "scale", "branches", "orbit", "growth", "threshold", "sweep")
+COSTLY = ("public", "series", "commands", "start", "scale", "branches", "orbit", "growth", "threshold", "sweep")
 EVENTS = {"scipy DOP853, terminal event", "heyoka, terminal event"}
 PEERS = {
+    "public": {"heyoka", "scipy", "numba"},
     "map": EVENTS,
     "orbit": EVENTS,
     "regimes": {"scipy DOP853", "heyoka", "mpmath findroot", "mpmath odefun"},
@@ -48,7 +52,6 @@ PEERS = {
     "series": {"sympy, integrals and series", "sympy, implicit function"},
     "fixed-points": {"mpmath findroot", "numpy roots"},
     "emitted": {"sympy lambdify", "sympy lambdify, cse", "sympy subs"},
-    "figures": {"contour of a grid"},
     "growth": {"mpmath findroot", "scipy DOP853, 1e-9", "heyoka, 1e-9"},
     "commands": set(),
     "sweep": {"ThreadPoolExecutor.map", "ProcessPoolExecutor.map"},
@@ -132,7 +135,7 @@ def test_restitutions_are_taken_in_turn():
 
 def test_groups_of_a_quick_look(singimpact):
     assert set(GROUPS) == set(usual(FULL)) == set(PEERS)
-    assert set(GROUPS) - set(usual(QUICK)) == {"start", "limit"}
+    assert set(GROUPS) - set(usual(QUICK)) == {"public", "start", "limit"}
     told = " ".join(singimpact("bench", "--help").stdout.split())
     assert [name for name in GROUPS if name not in told] == []
 
@@ -199,28 +202,79 @@ def test_markdown(singimpact):
     assert len({line.count("|") for line in lines[2:] if line.startswith("|")}) == 1
 
 
-def test_page_of_the_documentation(singimpact, tmp_path):
-    """One command writes it, and links the pictures from where it lies."""
-    (tmp_path / "docs").mkdir()
-    told = singimpact("bench", "fixed-points", "--quick", "--format", "page", "--plots", tmp_path / "docs" / "p",
-                      "-o", tmp_path / "docs" / "page.md")  # fmt: skip
+@pytest.fixture(scope="module")
+def page(tmp_path_factory):
+    """The page of a quick run, in a folder with its numbers and its picture."""
+    place = tmp_path_factory.mktemp("page") / "page.md"
+    told = CliRunner().invoke(main, ["bench", "--quick", "--format", "page", "-o", str(place)])
     assert told.exit_code == 0, told.output
-    text = (tmp_path / "docs" / "page.md").read_text()
+    return place
+
+
+@pytest.mark.slow
+def test_one_command_writes_the_page_its_numbers_and_its_picture(page):
+    text = page.read_text()
     assert text.startswith(f"<!-- written by `{COMMAND}` from sources {timed_digest()}; do not edit -->")
-    assert 0 < text.index("![Fixed points: time against error](p/bench-fixed-points.png)") < text.index("\n| case |")
-    assert (tmp_path / "docs" / "p" / "bench-fixed-points.png").is_file()
-    assert set(TITLES) == set(GROUPS)
+    assert [path.name for path in sorted(page.parent.iterdir())] == ["page.csv", "page.md", "page.png"]
+    assert rows_of(text) == rows_of_numbers(page.with_suffix(".csv"))
+    assert len(rows_of(text)) == 12
 
 
-def test_stored_page_opens_with_its_plots(clone):
-    """As the generator orders them: every picture, then how to read the tables, then every table with its heading."""
+def rows_of(text):
+    """The lines of the table, without its head."""
+    return [line for line in text.splitlines() if line.startswith("| ")][1:]
+
+
+def rows_of_numbers(path):
+    """The lines of the table from the numbers of the csv file."""
+    with path.open(newline="") as stream:
+        numbers = list(csv.DictReader(stream))
+    lines = []
+    for case in dict.fromkeys(row["case"] for row in numbers):
+        own, *peers = [row for row in numbers if row["case"] == case]
+        cells = [case, in_words(float(own["microseconds"])), f"{float(own['error']):.0e}" if own["error"] else ""]
+        for name in ("heyoka", "scipy", "numba"):
+            found = [row for row in peers if row["method"] == name]
+            ratio = f"{float(format(float(found[0]['ratio']), '.2g')):g} times" if found else ""
+            error = f"{float(found[0]['error']):.0e}" if found and found[0]["error"] else ""
+            missed = (
+                f"{found[0]['missed']} of {found[0]['of']} missed"
+                if found and found[0]["missed"] not in ("", "0")
+                else ""
+            )
+            cells.append(", ".join(filter(None, [ratio, error, missed])))
+        lines.append("| " + " | ".join(cells) + " |")
+    return lines
+
+
+def test_the_stored_page_has_the_numbers_of_its_csv_file_and_one_picture(clone):
     text = (clone / "docs" / "benchmarks.md").read_text(encoding="utf-8")
-    plots, reading, tables = (text.index(f"\n## {part}") for part in ("Plots", "How to read", "Tables"))
-    assert text[: plots - 1].partition("\n")[2] == ABOUT
-    assert text[reading + 1 :].startswith(READING)
-    assert len(re.findall(r"!\[.*: time against error\]", text[plots:reading])) == text.count("![") > 5
-    assert text.index("\n| case |") > tables
-    assert set(re.findall(r"^### (.*)$", text[tables:], re.MULTILINE)) <= set(TITLES.values())
+    assert rows_of(text) == rows_of_numbers(clone / "docs" / "benchmarks.csv")
+    assert len(rows_of(text)) == 12
+    assert text.count("![") == text.count("](benchmarks.png)") == 1
+    assert text.partition("\n")[2].startswith(ABOUT)
+    assert text.rstrip().endswith(READING.rstrip())
+    assert (clone / "docs" / "benchmarks.png").stat().st_size > 20_000
+
+
+def test_five_rows_stand_in_the_readme(clone):
+    stored = rows_of((clone / "docs" / "benchmarks.md").read_text(encoding="utf-8"))
+    told = (clone / "README.md").read_text(encoding="utf-8").partition("## How fast")[2].partition("\n## ")[0]
+    assert len(rows_of(told)) == 5
+    assert set(rows_of(told)) <= set(stored)
+
+
+def test_loops_of_fixed_steps_fly_to_the_impact_and_lose_digits_where_v_is_small():
+    states = Draws("linear", "generic", 50, restitution=0.9)()
+    numbers = fixed_steps.numbers("linear", 2.8, 0.3)
+    step = states.osc.impact_map(states.tau, states.v)
+    assert np.abs(fixed_steps.flights(states.tau, states.v, numbers) / step.flight_time - 1).max() < 1e-9
+    rows = fixed_steps.orbit(states.tau[0], states.v[0], 5, 0.9, numbers)
+    orbit = states.osc.orbit(float(states.tau[0]), float(states.v[0]), 5)
+    assert np.abs(rows / np.column_stack([orbit.tau, orbit.v])[1:6] - 1).max() < 1e-9
+    slow = Draws("linear", "v from 1e-8 to 1e-2", 200, restitution=0.9)()
+    off = np.abs(fixed_steps.flights(slow.tau, slow.v, numbers) / slow.osc.impact_map(slow.tau, slow.v).flight_time - 1)
+    assert np.nanmax(off) > 1e-2
 
 
 def test_interrupted_run_leaves_nothing(singimpact, tmp_path, monkeypatch):
@@ -238,7 +292,8 @@ def test_interrupted_run_leaves_nothing(singimpact, tmp_path, monkeypatch):
     [(("mapp",), "unknown group 'mapp': the nearest known are map"),
      (("growth", "--plots", "{file}"), "cannot be written"),
      (("growth", "-o", "{file}/absent/b.txt"), "cannot be written"),
-     (("growth", "--picture", "gif"), "'gif' is not one of")],
+     (("growth", "--picture", "gif"), "'gif' is not one of"),
+     (("growth", "--format", "page"), "--format page is not accepted with growth")],
 )  # fmt: skip
 def test_refused_before_anything_is_measured(arguments, told, singimpact, tmp_path, monkeypatch):
     monkeypatch.setattr("singimpact.bench.groups.measured", lambda *_: pytest.fail("it was measured"))

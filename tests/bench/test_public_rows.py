@@ -97,7 +97,7 @@ def _rows(group: str) -> list[tuple[Case, Method]]:
 @pytest.mark.parametrize(
     "group",
     [each for each in IN_PROCESS if each != "orbit"]
-    + [pytest.param(each, marks=pytest.mark.slow) for each in ("figures", "orbit")],
+    + [pytest.param(each, marks=pytest.mark.slow) for each in ("public", "orbit")],
 )
 def test_rows_named_for_the_package_call_public_names_only(group):
     rows = [(case, method) for case, method in _rows(group) if method.name.startswith("singimpact")]

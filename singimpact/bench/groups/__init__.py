@@ -7,31 +7,30 @@ from singimpact.bench.groups import (
     chatter_rows,
     command_rows,
     emitted_rows,
-    figure_rows,
     fixed_point_rows,
     growth_rows,
     impact_map_rows,
     limit_rows,
     orbit_rows,
+    public_rows,
     regime_rows,
     scale_rows,
     series_rows,
     start_rows,
     sweep_rows,
-    threshold_rows,
 )
 from singimpact.bench.measuring import Case, Effort, Measured, measure
 
 GROUPS: dict[str, Callable[[Effort], Iterator[Case]]] = {
+    "public": public_rows.cases,
     "map": impact_map_rows.cases,
     "orbit": orbit_rows.cases,
     "regimes": regime_rows.cases,
     "chatter": chatter_rows.cases,
-    "threshold": threshold_rows.cases,
+    "threshold": chatter_rows.threshold_cases,
     "series": series_rows.cases,
     "fixed-points": fixed_point_rows.cases,
     "emitted": emitted_rows.cases,
-    "figures": figure_rows.cases,
     "growth": growth_rows.cases,
     "commands": command_rows.cases,
     "sweep": sweep_rows.cases,
@@ -44,8 +43,8 @@ SLOW = ("start", "limit")  # new cache folders, again and again
 
 
 def usual(effort: Effort) -> list[str]:
-    """The groups that are measured when none is named."""
-    return [name for name in GROUPS if not (effort.quick and name in SLOW)]
+    """The groups that are measured when none is named; `public` repeats cases of others."""
+    return [name for name in GROUPS if name != "public" and not (effort.quick and name in SLOW)]
 
 
 def measured(name: str, effort: Effort, told: Callable[[str], None] = lambda _: None) -> Measured:

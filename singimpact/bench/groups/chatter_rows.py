@@ -1,18 +1,22 @@
 """`bench chatter`: when infinitely many impacts accumulate: x'' + x = cos 2t, c = 0.3, from (1.2, 0.01), as close as
 wanted; and c = 0.7 or Duffing's model, from other states in every timed call.
+
+`bench threshold`: the v between complete and incomplete chatter: x'' + x = cos 2.8t, c = 0, r = 1/2, over pi/2.8, as
+close as wanted; and c = 0.3 or Duffing's model, over other phases in every timed call.
 """
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
-from math import cos
+from math import cos, pi
 from typing import Any
 
-from singimpact.bench.drawn import CHATTERING, Draws, States, counted, model
+from singimpact.bench.drawn import CHATTERING, Draws, States, counted, model, pressing
 from singimpact.bench.groups.impact_map_rows import ACCURACY, HEYOKA, SCIPY, taylor_stepper
 from singimpact.bench.measuring import Case, Effort, Method, condition, with_peers
 from singimpact.bench.peers import followed_impacts, many_digits, runge_kutta, taylor_events
 from singimpact.bench.problems import Problem, values
+from singimpact.dynamics.threshold import threshold
 from singimpact.impact_oscillator import linear
 
 STATE = "1.2", "0.01"
@@ -26,10 +30,10 @@ def cases(effort: Effort) -> Iterator[Case]:
     for r in ("0.5", "0.9"):
         yield _case(r, effort)
     for restitution in (0.9,) if effort.quick else (0.5, 0.9, 0.99, 0.999):
-        yield _drawn(CHATTERING, restitution, 1, effort)
-    yield _drawn("duffing", 0.7, 1, effort)
+        yield states_case(CHATTERING, restitution, 1, effort)
+    yield states_case("duffing", 0.7, 1, effort)
     for restitution in (0.9,) if effort.quick else (0.5, 0.9):
-        yield _drawn(CHATTERING, restitution, 25 * effort.judged if effort.quick else 100_000, effort)
+        yield states_case(CHATTERING, restitution, 25 * effort.judged if effort.quick else 100_000, effort)
 
 
 def _case(r: str, effort: Effort) -> Case:
@@ -75,7 +79,7 @@ JUDGED = {0.5: 5, 0.7: 2, 0.9: 3, 0.99: 1, 0.999: 1}  # states with 25 digits, b
 TO = 1e-3  # of the first velocity: where a peer ends
 
 
-def _drawn(family: str, restitution: float, count: int, effort: Effort) -> Case:
+def states_case(family: str, restitution: float, count: int, effort: Effort) -> Case:
     """Some calls of one state, or one of an array."""
     draw = partial(Draws, family, "chattering", restitution=restitution)
     osc, run = model(family, restitution), _a_state if count == 1 else _an_array
@@ -84,8 +88,8 @@ def _drawn(family: str, restitution: float, count: int, effort: Effort) -> Case:
     kind = "duffing" if family == "duffing" else "linear"
     methods, skipped = with_peers(
         own,
-        lambda: [_summed(HEYOKA, taylor_stepper(kind), draw(5))],
-        lambda: [_summed(SCIPY, runge_kutta.stepper(kind, ACCURACY[SCIPY]), draw(1))],
+        lambda: [summed(HEYOKA, taylor_stepper(kind), draw(5))],
+        lambda: [summed(SCIPY, runge_kutta.stepper(kind, ACCURACY[SCIPY]), draw(1))],
     )
     truth, kappas = _in_digits_of(osc, draw(1 if effort.quick else JUDGED[restitution])())
     name = "linear" if family == CHATTERING else "Duffing"
@@ -110,9 +114,104 @@ def _in_digits_of(osc: Any, states: States) -> tuple[list[Any], list[float]]:
     return [osc.chatter_limit(tau, v, digits=25).tau for tau, v in pairs], kappas
 
 
-def _summed(name: str, fly: Any, draw: Draws) -> Method:
+def summed(name: str, fly: Any, draw: Draws) -> Method:
+    """A peer that flies until v is a thousandth, and adds the rest by its first term."""
+
     def run(problems: Any) -> list[Any]:
         return [followed_impacts.chatter_limit(fly, each, TO * each.v, cos) for each in problems]
 
-    setting = f"tolerance {ACCURACY[name]:.0e}, {counted(draw.count, 'state')}, until v < {TO:.0e} v"
+    tolerance = f"tolerance {ACCURACY[name]:.0e}, " if name in ACCURACY else ""
+    setting = f"{tolerance}{counted(draw.count, 'state')}, until v < {TO:.0e} v"
     return Method(name, setting, run, draw=lambda: draw().problems())
+
+
+# ---- thresholds
+
+END = 3 * pi / 2 / 2.8  # the next zero of a_c with a_c' > 0
+WIDTHS = (1e-3, 1e-6, 1e-9, 1e-12)
+# a peer starts to look from here; it flies this one and doubles it until contact is lost
+GUESS = 0.05
+
+
+def threshold_cases(effort: Effort) -> Iterator[Case]:
+    """One phase as close as wanted, then others by restitution, and an array; peers bisect, to a relative width."""
+    yield _threshold(effort)
+    for restitution in (0.5, 0.9) if effort.quick else (0.5, 0.7, 0.9, 0.99):
+        yield phases_case("linear", restitution, 1, effort)
+    yield phases_case("duffing", 0.7, 1, effort)
+    yield phases_case("linear", 0.5, effort.judged if effort.quick else 1000, effort)
+
+
+def _threshold(effort: Effort) -> Case:
+    osc = linear("2.8", 0, "0.5")
+    problem = Problem("linear", "chatter", 2.8, 0.0, 0.5, pi / 2.8, GUESS, "", "")
+    widths = WIDTHS[:2] if effort.quick else WIDTHS
+    own = [Method("singimpact", "doubles", lambda: [threshold(osc, "pi/2.8").v])]
+    own += [
+        Method("singimpact", f"digits {d}", partial(_threshold_digits, osc, d), epsilon=10.0**-d)
+        for d in ((30,) if effort.quick else (20, 30, 40))
+    ]
+    methods, skipped = with_peers(
+        own,
+        lambda: [_bisected("scipy DOP853, 1e-9", runge_kutta.stepper("linear", 1e-9), problem, w) for w in widths],
+        lambda: [_bisected("heyoka, 1e-9", taylor_events.stepper("linear", 1e-9), problem, w) for w in widths],
+        lambda: [_bisected("mpmath findroot, dps 15", many_digits.root_of_closed_form, problem, w) for w in widths[1:]],
+    )
+    kappa = condition(lambda tau, _: float(threshold(osc, tau).v), pi / 2.8, 1.0, 1e-4)
+    truth = values()["threshold.linear[w=2.8,c=0,r=0.5](pi/2.8)"]
+    return Case("linear, r = 0.5", methods, [truth], [kappa], skipped)
+
+
+def _threshold_digits(osc: Any, digits: int) -> list[Any]:
+    return [threshold(osc, "pi/2.8", digits=digits).v]
+
+
+def _bisected(name: str, fly: Callable[[Problem], tuple[Any, Any]], problem: Problem, width: float) -> Method:
+    return Method(name, f"to {width:.0e}", lambda: [followed_impacts.threshold(fly, problem, END, width)])
+
+
+PHASES = 5  # of a timed run of a phase a call
+JUDGED_PHASES = {("linear", 0.5): 3, ("linear", 0.7): 2, ("linear", 0.9): 1, ("linear", 0.99): 0, ("duffing", 0.7): 1}
+"""Phases with 20 digits: of Duffing's model it takes 10 s, and 50 s at r = 0.99, which is not judged."""
+WIDTH = 1e-3  # relative width at which a peer's bisection ends
+
+
+def phases_case(family: str, restitution: float, count: int, effort: Effort) -> Case:
+    """Some calls of one phase, or one of an array."""
+    draw = partial(Draws, family, "chattering", restitution=restitution)
+    osc, run = model(family, restitution), _a_phase if count == 1 else _array_of_phases
+    setting, problems = f"{counted(count, 'phase')} a call", PHASES if count == 1 else count
+    own = [Method("singimpact, threshold", setting, run, problems=problems, draw=draw(problems))]
+    methods, skipped = with_peers(
+        own,
+        lambda: [between(HEYOKA, taylor_stepper(family), draw(1))],
+        lambda: [between(SCIPY, runge_kutta.stepper(family, 1e-9), draw(1))],
+    )
+    judged = JUDGED_PHASES[family, restitution]
+    if effort.quick:
+        judged = min(judged, 1) if family == "linear" else 0
+    phases = draw(judged)().tau.tolist()
+    truth = [threshold(osc, tau, digits=20).v for tau in phases]
+    kappas = [condition(lambda tau, _: float(threshold(osc, tau).v), tau, 1.0, 1e-4) for tau in phases]
+    name = "Duffing" if family == "duffing" else family
+    title = f"{name}, c = 0.3, r = {restitution:g}, {setting}"
+    notes = [] if judged else [f"{title}: times alone, no answer is judged: many digits of it take too long."]
+    return Case(title, methods, truth, kappas, skipped, notes=notes)
+
+
+def _a_phase(states: States) -> list[float]:
+    return [float(threshold(states.osc, tau).v) for tau in states.tau.tolist()]
+
+
+def _array_of_phases(states: States) -> Any:
+    return threshold(states.osc, states.tau).v
+
+
+def between(name: str, fly: Any, draw: Draws) -> Method:
+    """A peer that bisects between a v whose chatter completes and one that loses contact."""
+    end = pressing(draw.family)[1]
+
+    def run(problems: Any) -> list[Any]:
+        return [followed_impacts.threshold(fly, replace(each, v=GUESS), end, WIDTH) for each in problems]
+
+    return Method(name, f"{counted(draw.count, 'phase')}, to {WIDTH:.0e}", run, draw=lambda: draw().problems())

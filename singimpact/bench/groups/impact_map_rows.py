@@ -84,12 +84,12 @@ def cases(effort: Effort) -> Iterator[Case]:
         for family in ("linear", "duffing"):
             model(family, restitution)  # built outside the clock
     for calls in CALLS:
-        yield _map(calls, sizes)
-    yield _derivative(sizes)
+        yield map_case(calls, sizes)
+    yield derivative_case(sizes)
     yield _inverse(sizes)
 
 
-def _map(calls: Calls, sizes: Sizes) -> Case:
+def map_case(calls: Calls, sizes: Sizes) -> Case:
     count = sizes.many if calls.states == 0 else max(sizes.flown, calls.states)
     split = calls.states or count
     draw: Callable[[int], Any] = (
@@ -182,7 +182,7 @@ def flown_by(name: str, fly: Any, states: tuple[Callable[[int], Any], int], aim:
     )
 
 
-def _derivative(sizes: Sizes) -> Case:
+def derivative_case(sizes: Sizes) -> Case:
     draw = partial(Draws, "linear", "generic")
     own = [
         Method(

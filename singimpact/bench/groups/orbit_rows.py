@@ -37,15 +37,15 @@ def cases(effort: Effort) -> Iterator[Case]:
     rates = RESTITUTIONS[::4] if effort.quick else RESTITUTIONS
     for family in ("linear", "duffing"):
         for restitution in rates:
-            yield _orbit(family, restitution, effort)
-    yield _orbit(CHATTERING, 0.5, effort)
+            yield orbit_case(family, restitution, effort)
+    yield orbit_case(CHATTERING, 0.5, effort)
     for restitution in rates:
         yield _iterate("linear", restitution, effort)
     yield _iterate("duffing", 0.9, effort)
     yield from _asked_of_orbits(effort)
 
 
-def _orbit(family: str, restitution: float, effort: Effort) -> Case:
+def orbit_case(family: str, restitution: float, effort: Effort) -> Case:
     """Every run has several orbits; impacts are counted that were flown, not the ones that a sum stands for."""
     starts, impacts = 4 if effort.quick else 10, 1000
     few = (2, 20) if effort.quick else (10, 100)

@@ -3,7 +3,6 @@
 from math import cos, sin
 from typing import Any
 
-from singimpact.bench.measuring import NotInstalled
 from singimpact.bench.peers.followed_impacts import derivative_of_map
 from singimpact.bench.problems import Problem
 
@@ -12,16 +11,8 @@ LONGEST = 1000.0  # time after which a flight is given up
 
 
 def stepper(family: str, tolerance: float = 1e-9) -> Any:
-    """A function from a problem to its first event: time since the launch, velocity; nan when none is found.
-
-    Raises
-    ------
-    NotInstalled : scipy is not there.
-    """
-    try:
-        from scipy.integrate import solve_ivp
-    except ImportError:
-        raise NotInstalled("scipy") from None
+    """A function from a problem to its first event: time since the launch, velocity; nan when none is found."""
+    from scipy.integrate import solve_ivp
 
     def fly(problem: Problem) -> tuple[float, float]:
         def field(t: float, y: Any) -> list[float]:
@@ -43,16 +34,8 @@ def stepper(family: str, tolerance: float = 1e-9) -> Any:
 
 
 def varied(tolerance: float = 1e-9) -> Any:
-    """A function from a problem of the linear family to the four entries of D G, from the variational equation.
-
-    Raises
-    ------
-    NotInstalled : scipy is not there.
-    """
-    try:
-        from scipy.integrate import solve_ivp
-    except ImportError:
-        raise NotInstalled("scipy") from None
+    """A function from a problem of the linear family to the four entries of D G, from the variational equation."""
+    from scipy.integrate import solve_ivp
 
     def fly(problem: Problem) -> list[float]:
         omega = problem.omega

@@ -1,0 +1,114 @@
+"""`bench public`: the twelve calls of the page on run times, beside heyoka, scipy and a student's loops of numba.
+
+Cases of other groups under names of one kind, with the loops beside them; and two studies, of which only the time is
+measured: no truth of a picture is known.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+import singimpact as si
+from singimpact.algebra.numbers import Array
+from singimpact.bench.drawn import CHATTERING, CLEARANCES, OMEGAS, Draws, States
+from singimpact.bench.groups import chatter_rows
+from singimpact.bench.groups.impact_map_rows import Calls, derivative_case, map_case, sizes_of
+from singimpact.bench.groups.orbit_rows import FIRST, orbit_case
+from singimpact.bench.measuring import NO_AIM, Case, Counted, Effort, Method
+from singimpact.bench.peers import fixed_steps
+
+SLOW = "v from 1e-8 to 1e-2"
+TWO_BASINS = si.linear("2.8", "0.1", "0.8", amplitude=-1)
+OVER = (-0.1, 0.25)  # clearances of the bifurcation diagram
+
+
+def cases(effort: Effort) -> Iterator[Case]:
+    """The twelve cases."""
+    maps = {
+        "linear, a state a call": ("linear", "generic", 1),
+        "linear, an array": ("linear", "generic", 0),
+        "linear, v from 1e-8 to 1e-2": ("linear", SLOW, 0),
+        "Duffing, a state a call": ("duffing", "generic", 1),
+        "Duffing, an array": ("duffing", "generic", 0),
+    }
+    for name, (family, kind, states) in maps.items():
+        case = map_case(Calls(family, kind, states, 0.0), sizes_of(effort))
+        yield _beside(f"impact_map: {name}", case, _flown(family, kind, effort))
+    yield _beside("derivative: linear, an array", derivative_case(sizes_of(effort)))
+    for name, family in (("linear", "linear"), ("Duffing", "duffing")):
+        yield _beside(f"orbit: {name}, an impact", orbit_case(family, 0.9, effort), _orbits(family))
+    limits = chatter_rows.states_case(CHATTERING, 0.9, 1, effort)
+    few = Draws(CHATTERING, "chattering", 5, restitution=0.9)
+    yield _beside("chatter_limit: linear, a state", limits, chatter_rows.summed("numba", fixed_steps.fly, few))
+    thresholds = chatter_rows.phases_case("linear", 0.5, 1, effort)
+    phase = Draws("linear", "chattering", 1, restitution=0.5)
+    yield _beside("threshold: linear, a phase", thresholds, chatter_rows.between("numba", fixed_steps.fly, phase))
+    yield Case("basins: linear, a pixel", _basins(effort))
+    yield Case("bifurcation: linear, a value", _diagrams(effort))
+
+
+def _beside(title: str, case: Case, *loops: Method) -> Case:
+    """A case of another group: the first call of the package, the peers by the names of their programs, the loops."""
+    own, *others = case.methods
+    programs = [(method, method.name.partition(",")[0].split()[0]) for method in others]
+    peers = [replace(method, name=program, aim=NO_AIM) for method, program in programs if program != own.name[:10]]
+    return replace(case, name=title, methods=[replace(own, name="singimpact", aim=NO_AIM), *peers, *loops])
+
+
+def _numbers(states: States) -> Array:
+    return fixed_steps.numbers(states.family, OMEGAS[states.family], CLEARANCES[states.family])
+
+
+def _flown(family: str, kind: str, effort: Effort) -> Method:
+    count = 10 * effort.judged
+
+    def run(states: States) -> Any:
+        return fixed_steps.flights(states.tau, states.v, _numbers(states))
+
+    return Method("numba", f"{count} states", run, problems=count, draw=Draws(family, kind, count))
+
+
+def _orbits(family: str) -> Method:
+    def run(states: States) -> Counted:
+        pairs = zip(states.tau.tolist(), states.v.tolist(), strict=True)
+        rows = [fixed_steps.orbit(*pair, 100, states.restitution, _numbers(states))[:, 0] for pair in pairs]
+        return Counted(int(np.isfinite(rows).sum()), np.array(rows)[:, np.array(FIRST) - 1].ravel().tolist())
+
+    return Method("numba", "100 impacts", run, draw=Draws(family, "generic", 10, restitution=0.9))
+
+
+def _basins(effort: Effort) -> list[Method]:
+    """A student flies 200 impacts from each state, and looks at the last ten."""
+    side, few = (40, 10) if effort.quick else (400, 20)
+    tau, v = (axis.ravel().tolist() for axis in np.meshgrid(np.linspace(0, 2, few), np.linspace(0.01, 2, few)))
+    n = fixed_steps.numbers("linear", 2.8, 0.1, -1.0)
+
+    def run() -> list[Array]:
+        return [fixed_steps.orbit(*state, 200, 0.8, n)[-10:] for state in zip(tau, v, strict=True)]
+
+    own = partial(si.basins, TWO_BASINS, size=side)
+    return [_timed("singimpact", f"{side} x {side}", side**2, own), _timed("numba", f"{few} x {few}", few**2, run)]
+
+
+def _diagrams(effort: Effort) -> list[Method]:
+    count, few = (20, 5) if effort.quick else (300, 20)
+    own = partial(si.bifurcation, TWO_BASINS, "clearance", OVER, points=count)
+    models = [fixed_steps.numbers("linear", 2.8, c, -1.0) for c in np.linspace(*OVER, few)]
+
+    def run() -> list[Array]:
+        return [fixed_steps.orbit(0.0, 0.1, 260, 0.8, n)[200:] for n in models]
+
+    return [_timed("singimpact", f"{count} values", count, own), _timed("numba", f"{few} values", few, run)]
+
+
+def _timed(name: str, setting: str, problems: int, call: Callable[[], object]) -> Method:
+    """A method whose answers nobody judges."""
+
+    def run() -> list[None]:
+        call()
+        return [None]
+
+    return Method(name, setting, run, problems=problems)
