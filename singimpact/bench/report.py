@@ -185,9 +185,9 @@ class Sheet:
     floor : where an error of zero is drawn, unless others are smaller still.
     """
 
-    width: float = 4.6
-    height: float = 3.5
-    columns: int = 2
+    width: float = 3.9
+    height: float = 3.0
+    columns: int = 3
     bar: float = 0.34
     least: float = 1e3
     floor: float = 1e-17

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 import sys
 
 import numpy as np
@@ -262,6 +263,19 @@ def test_five_rows_stand_in_the_readme(clone):
     told = (clone / "README.md").read_text(encoding="utf-8").partition("## How fast")[2].partition("\n## ")[0]
     assert len(rows_of(told)) == 5
     assert set(rows_of(told)) <= set(stored)
+
+
+TIME = re.compile(r"\b\d+(?:\.\d+)? (?:us|µs|ms|ns)\b|\bin \d+ s\b")
+
+
+def test_other_pages_have_no_speed_of_their_own(clone):
+    stored = set(rows_of((clone / "docs" / "benchmarks.md").read_text(encoding="utf-8")))
+    pages = [clone / "README.md", *(path for path in (clone / "docs").rglob("*.md") if "computed" not in path.parts)]
+    others = [path for path in pages if path.name not in ("benchmarks.md", "stress.md")]
+    lines = [line for path in others for line in path.read_text(encoding="utf-8").splitlines()]
+    assert [line for line in lines if TIME.search(line) and line not in stored] == []
+    assert TIME.search("a state takes 5 us")
+    assert len(pages) > 40
 
 
 def test_loops_of_fixed_steps_fly_to_the_impact_and_lose_digits_where_v_is_small():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 
 import pytest
@@ -53,3 +54,10 @@ def test_the_page_of_stress_is_what_its_command_writes(clone):
     text = (clone / "docs" / "stress.md").read_text(encoding="utf-8")
     assert text.partition("\n")[2].startswith(STRESS_ABOUT)
     assert stress_page("x").partition("\n")[2] == f"{STRESS_ABOUT}\n\nx"
+
+
+def test_the_page_of_run_times_names_the_commit_that_was_measured(clone):
+    text = (clone / "docs" / "benchmarks.md").read_text(encoding="utf-8")
+    (commit,) = re.findall(r"^Measured at commit `([0-9a-f]{40})`\.$", text, re.MULTILINE)
+    if commit in git(clone, "rev-list", "HEAD").split():
+        assert digest_at(clone, commit) == recorded(text)
