@@ -16,11 +16,12 @@ _FILES = {
     "groups.series_rows": "LIMITED",
     "groups.start_rows": "MODELS first_answer first_model script",
     "measuring": (
-        "Aim Case Counted EPSILON Effort FULL Measured Method Timed condition cpu_seconds measure relative_error"
+        "Aim Case Counted EPSILON Effort FULL Measured Method QUICK Timed condition cpu_seconds measure relative_error"
     ),
     "page": "ABOUT COMMAND READING STRESS_ABOUT STRESS_COMMAND digest_of recorded stress_page table timed_digest",
+    "peers.fixed_steps": "flights numbers orbit",
     "problems": "Problem states values",
-    "report": "exponents fitted plotted reached tables",
+    "report": "exponents fitted in_words plotted reached tables",
     "selftest.basin_pixels": "Follower row",
     "selftest.batches": "grazes lanes",
     "selftest.draws": "flown",

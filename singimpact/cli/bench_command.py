@@ -341,8 +341,8 @@ def _page(public: Measured, output: str | None) -> str:
         write_text(Path(output).with_suffix(".csv"), as_csv(public.rows))
         save(plotted(public), Path(output).with_suffix(".png"))
     package = Path(__file__).parents[1]
-    told = subprocess.run(["git", "-C", package, "rev-parse", "HEAD"], capture_output=True, text=True, check=False)
-    return page(markdown(*table(public.rows)), told.stdout.strip() or "unknown")
+    answer = subprocess.run(["git", "-C", package, "rev-parse", "HEAD"], capture_output=True, text=True, check=False)
+    return page(markdown(*table(public.rows)), answer.stdout.strip() or "unknown")
 
 
 def _text(found: Measured, form: str) -> str:

@@ -19,6 +19,7 @@ from singimpact.bench import (
     FULL,
     GROUPS,
     KINDS,
+    QUICK,
     READING,
     RESTITUTIONS,
     Draws,
@@ -26,18 +27,19 @@ from singimpact.bench import (
     Fed,
     exponents,
     fitted,
+    flights,
+    in_words,
     measure,
     measured,
+    numbers,
     of_states,
+    orbit,
     sizes_of,
     taylor_stepper,
     timed_digest,
     usual,
 )
 from singimpact.bench.groups import series_rows
-from singimpact.bench.measuring import QUICK
-from singimpact.bench.peers import fixed_steps
-from singimpact.bench.report import in_words
 from singimpact.cli import main
 
 SMALL = Effort(quick=True, rounds=1, least=0, once=0, fresh=1, states=1, judged=4)
@@ -229,10 +231,10 @@ def rows_of(text):
 def rows_of_numbers(path):
     """The lines of the table from the numbers of the csv file."""
     with path.open(newline="") as stream:
-        numbers = list(csv.DictReader(stream))
+        rows = list(csv.DictReader(stream))
     lines = []
-    for case in dict.fromkeys(row["case"] for row in numbers):
-        own, *peers = [row for row in numbers if row["case"] == case]
+    for case in dict.fromkeys(row["case"] for row in rows):
+        own, *peers = [row for row in rows if row["case"] == case]
         cells = [case, in_words(float(own["microseconds"])), f"{float(own['error']):.0e}" if own["error"] else ""]
         for name in ("heyoka", "scipy", "numba"):
             found = [row for row in peers if row["method"] == name]
@@ -280,14 +282,14 @@ def test_other_pages_have_no_speed_of_their_own(clone):
 
 def test_loops_of_fixed_steps_fly_to_the_impact_and_lose_digits_where_v_is_small():
     states = Draws("linear", "generic", 50, restitution=0.9)()
-    numbers = fixed_steps.numbers("linear", 2.8, 0.3)
+    loops = numbers("linear", 2.8, 0.3)
     step = states.osc.impact_map(states.tau, states.v)
-    assert np.abs(fixed_steps.flights(states.tau, states.v, numbers) / step.flight_time - 1).max() < 1e-9
-    rows = fixed_steps.orbit(states.tau[0], states.v[0], 5, 0.9, numbers)
-    orbit = states.osc.orbit(float(states.tau[0]), float(states.v[0]), 5)
-    assert np.abs(rows / np.column_stack([orbit.tau, orbit.v])[1:6] - 1).max() < 1e-9
+    assert np.abs(flights(states.tau, states.v, loops) / step.flight_time - 1).max() < 1e-9
+    rows = orbit(states.tau[0], states.v[0], 5, 0.9, loops)
+    exact = states.osc.orbit(float(states.tau[0]), float(states.v[0]), 5)
+    assert np.abs(rows / np.column_stack([exact.tau, exact.v])[1:6] - 1).max() < 1e-9
     slow = Draws("linear", "v from 1e-8 to 1e-2", 200, restitution=0.9)()
-    off = np.abs(fixed_steps.flights(slow.tau, slow.v, numbers) / slow.osc.impact_map(slow.tau, slow.v).flight_time - 1)
+    off = np.abs(flights(slow.tau, slow.v, loops) / slow.osc.impact_map(slow.tau, slow.v).flight_time - 1)
     assert np.nanmax(off) > 1e-2
 
 

@@ -40,6 +40,7 @@ def cases(effort: Effort) -> Iterator[Case]:
     yield _beside("derivative: linear, an array", derivative_case(sizes_of(effort)))
     for name, family in (("linear", "linear"), ("Duffing", "duffing")):
         yield _beside(f"orbit: {name}, an impact", orbit_case(family, 0.9, effort), _orbits(family))
+    # a student ends a chatter as the other peers do, and bisects as they do
     limits = chatter_rows.states_case(CHATTERING, 0.9, 1, effort)
     few = Draws(CHATTERING, "chattering", 5, restitution=0.9)
     yield _beside("chatter_limit: linear, a state", limits, chatter_rows.summed("numba", fixed_steps.fly, few))
@@ -53,6 +54,7 @@ def cases(effort: Effort) -> Iterator[Case]:
 def _beside(title: str, case: Case, *loops: Method) -> Case:
     """A case of another group: the first call of the package, the peers by the names of their programs, the loops."""
     own, *others = case.methods
+    # "heyoka, terminal event" is heyoka; further settings of the package have no column
     programs = [(method, method.name.partition(",")[0].split()[0]) for method in others]
     peers = [replace(method, name=program, aim=NO_AIM) for method, program in programs if program != own.name[:10]]
     return replace(case, name=title, methods=[replace(own, name="singimpact", aim=NO_AIM), *peers, *loops])

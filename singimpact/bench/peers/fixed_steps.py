@@ -37,6 +37,7 @@ def _flight(tau: float, v: float, n: Array) -> tuple[float, float]:
     for _ in range(LONGEST * STEPS):
         y, w = step(t, x, u, h, n)
         if y < n[1]:
+            # from the end of the step: from its start the first step of a flight would find the launch
             s = h
             for _ in range(20):
                 s -= (y - n[1]) / w
@@ -66,6 +67,7 @@ def _orbit(tau: float, v: float, impacts: int, r: float, n: Array) -> Array:
     return rows
 
 
+# Python's functions stay as they are written; these are what runs
 step: Any = njit(_step)
 flight: Any = njit(_flight)
 flights: Any = njit(_flights)

@@ -75,7 +75,7 @@ def picture(number: Any) -> Picture:
     ------
     InputError : neither a number from 1 to 17 nor a name of `BEYOND`.
     """
-    number = {str(each): each for each in FIGURES}.get(number, number) if isinstance(number, str) else number
+    number = {str(key): key for key in FIGURES}.get(number, number) if isinstance(number, str) else number
     if isinstance(number, bool) or not isinstance(number, int | str) or number not in (*FIGURES, *BEYOND):
         raise refuse("figure", number, ACCEPTED)
     return _function(number)()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from contextlib import contextmanager
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -10,7 +10,7 @@ import pytest
 from witness import integrate
 
 import singimpact as si
-from singimpact.flights import model_numbers, recurrence_of
+from singimpact.flights import allowed, recurrence_of
 from singimpact.status import Cause, Status
 
 LAYERS = [  # f, g, tau, v, flight time by a Runge-Kutta method with steps of 0.002
@@ -51,34 +51,25 @@ def step_size_of_discs(X, W, z, n, longest, ulp, p, pace):
 """The step on which the last two terms are below ulp/8 times the first ones, at most `longest`."""
 
 
-@contextmanager
-def last_terms():
-    """A block in which flights in Taylor steps take this rule."""
-    from singimpact.flights import compiled_model, model_numbers, multiprecision
-
-    usual = model_numbers.recurrence_of
+@pytest.fixture
+def last_terms(monkeypatch):
+    """Flights in Taylor steps take this rule."""
 
     def ruled(osc):
-        flow = usual(osc)
+        flow = recurrence_of(osc)
         return replace(flow, source=f"{flow.source}\n{RULE}")
 
-    rooms = (compiled_model, multiprecision)
-    for room in rooms:
-        room.recurrence_of = ruled
-    _forget()
-    try:
-        yield
-    finally:
-        for room in rooms:
-            room.recurrence_of = usual
-        _forget()
+    for room in ("compiled_model", "multiprecision"):
+        monkeypatch.setattr(f"singimpact.flights.{room}.recurrence_of", ruled)
+    forget()
+    yield
+    monkeypatch.undo()
+    forget()
 
 
-def _forget():
-    from singimpact.flights import compiled_model
-
-    compiled_model.compiled_model.cache_clear()
-    compiled_model.allowed.cache_clear()
+def forget():
+    allowed.cache_clear()
+    sys.modules[allowed.__module__].compiled_model.cache_clear()
 
 
 @pytest.mark.parametrize(("f", "g", "tau", "v", "time"), LAYERS)
@@ -98,13 +89,11 @@ def test_layers_are_not_jumped_over(f, g, tau, v, time) -> None:
     assert path.xdot == pytest.approx(xdot, abs=2e-2)
 
 
+@pytest.mark.usefixtures("last_terms")
 def test_the_usual_step_rule_jumps_over_them() -> None:
     """The check can fail: with steps chosen by their last terms the same flights are wrong."""
-    with last_terms():
-        off = [abs(si.ImpactOscillator(f, g, 0, "1/2").first_hit(tau, v).flight_time - time) > 1e-5
-               for f, g, tau, v, time in LAYERS]  # fmt: skip
-    assert sum(off) >= 4
-    assert recurrence_of is model_numbers.recurrence_of
+    hits = [si.ImpactOscillator(f, g, 0, "1/2").first_hit(tau, v).flight_time for f, g, tau, v, _ in LAYERS]
+    assert sum(abs(hit - layer[-1]) > 1e-5 for hit, layer in zip(hits, LAYERS, strict=True)) >= 4
 
 
 def test_the_derivative_is_that_of_the_flight() -> None:

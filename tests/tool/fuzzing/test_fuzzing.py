@@ -7,11 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from singimpact import InputError, Status
+from singimpact import InputError, Status, claims
 from singimpact.algebra import float_array, parse
 from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.oscillator import fields_of
-from singimpact.paper import select
 from singimpact.scenes import Scene
 from singimpact.theory import swan
 
@@ -132,5 +131,5 @@ def test_a_sign_that_is_not_decided_is_told_short():
 
 def test_a_claim_whose_name_is_a_number_of_many_digits():
     with pytest.raises(InputError, match="unknown claim") as found:
-        select(["1" * 5000])
+        claims["1" * 5000]
     assert len(str(found.value)) < 500
