@@ -3,7 +3,8 @@
 import difflib
 import math
 import os
-from collections.abc import Callable, Iterable, Mapping, Sequence
+import warnings
+from collections.abc import Callable, Iterable, Sequence
 from functools import wraps
 from numbers import Integral
 from types import FunctionType
@@ -158,6 +159,14 @@ def unknown(kind: str, name: str, accepted: Iterable[str]) -> InputError:
     return InputError(f"unknown {kind} {shown(name)}: none is near; there are {', '.join(some) or 'none'}{more}")
 
 
+def require_known(kind: str, names: Iterable[str], accepted: Iterable[str]) -> None:
+    """Refuse the first name that is not one of those accepted."""
+    known = list(accepted)
+    for name in names:
+        if name not in known:
+            raise unknown(kind, name, known)
+
+
 def checked_keywords(function: Callable[P, T]) -> Callable[P, T]:
     """The function, whose calls with other arguments than it takes are refused in a sentence.
 
@@ -173,8 +182,10 @@ def checked_keywords(function: Callable[P, T]) -> Callable[P, T]:
         try:
             return function(*values, **named)
         except TypeError:
-            _require_arguments(function, values, named)
-            raise
+            renamed = _in_new_names(function, values, named)
+            if renamed is None:
+                raise
+        return function(*values, **renamed)
 
     return checked
 
@@ -187,13 +198,26 @@ def checked_methods(kind: type[T]) -> type[T]:
     return kind
 
 
-def _require_arguments(function: Callable[..., Any], values: Sequence[Any], named: Mapping[str, Any]) -> None:
-    """Refuse arguments that a function does not take."""
+RENAMED = {"model": "osc", "steps": "points"}
+"""Old names of arguments, which work until version 1.1, and the new ones."""
+
+
+def _in_new_names(function: Callable[..., Any], values: Sequence[Any], named: dict[str, Any]) -> dict[str, Any] | None:
+    """The arguments under their new names, with a warning; None where there is no old one.
+
+    Raises
+    ------
+    InputError : arguments that the function does not take.
+    """
     from inspect import signature
 
     takes = signature(function).parameters
     names = [name for name, item in takes.items() if name != "self" and item.kind is not item.VAR_KEYWORD]
     title = type(values[0]).__name__ if function.__name__ == "__init__" else function.__name__
+    old = {name: RENAMED[name] for name in named if name not in names and RENAMED.get(name) in names}
+    for name, new in old.items():
+        warnings.warn(f"{title}({name}=...) is {title}({new}=...) now", FutureWarning, stacklevel=3)
+    named = {old.get(name, name): value for name, value in named.items()}
     for name in named:
         if name not in names and len(names) + ("self" in takes) == len(takes):
             instead = meant(name, names) or ", ".join(names) or "none"
@@ -202,3 +226,4 @@ def _require_arguments(function: Callable[..., Any], values: Sequence[Any], name
         signature(function).bind(*values, **named)
     except TypeError as error:
         raise InputError(f"{title} takes {', '.join(names)}: {error}") from None
+    return named if old else None

@@ -13,7 +13,7 @@ from types import ModuleType
 from typing import Any
 
 from singimpact.impact_oscillator import ImpactOscillator
-from singimpact.inputs import unknown
+from singimpact.inputs import require_known, unknown
 from singimpact.notebook import table
 
 COLUMNS = ("name", "title", "source")
@@ -44,9 +44,7 @@ class NamedModel:
     def __call__(self, **numbers: Any) -> ImpactOscillator:
         """The model, with the numbers that are given in place of its own: clearance, restitution, or a parameter."""
         own = self.fields.get("parameters", {})
-        for name in numbers:
-            if name not in ("clearance", "restitution", *own):
-                raise unknown(f"number of {self.name}", name, ["clearance", "restitution", *own])
+        require_known(f"number of {self.name}", numbers, ["clearance", "restitution", *own])
         parameters = {name: numbers.get(name, value) for name, value in own.items()}
         outer = {name: value for name, value in numbers.items() if name not in own}
         return ImpactOscillator(**self.fields | outer | {"parameters": parameters})

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 from singimpact.algebra.numbers import as_float, as_fraction, constant
 from singimpact.impact_oscillator import ImpactOscillator
-from singimpact.inputs import InputError, checked_keywords, refuse, unknown, whole
+from singimpact.inputs import InputError, checked_keywords, refuse, require_known, whole
 from singimpact.oscillator.model import Oscillator
 
 if TYPE_CHECKING:
@@ -171,13 +171,8 @@ def bifurcation(
     """
     from singimpact.dynamics.bifurcation_diagram import bifurcation
 
-    for name in sweeping:
-        if name not in ("executor", "output", "settle"):
-            raise unknown(
-                "argument of bifurcation",
-                name,
-                ["executor", "output", "start", "impacts", "kept", "direction", "settle"],
-            )
+    accepted = ["executor", "output", "settle", "start", "impacts", "kept", "direction"]
+    require_known("argument of bifurcation", sweeping, accepted)
     return bifurcation(osc, over, between, points, start, impacts, kept, direction, **sweeping)
 
 

@@ -147,11 +147,10 @@ def page(table: str, commit: str) -> str:
 def table(rows: Sequence[Row]) -> tuple[list[str], list[list[str]]]:
     """Header and cells of the page's table: a line a case, with the time and the error of its first row."""
     cases = {case: [row for row in rows if row.case == case] for case in dict.fromkeys(row.case for row in rows)}
-    lines = [
+    return ["call", "time", "error", *PEERS], [
         [case, in_words(own.microseconds), _error(own), *(_beside(peers, name) for name in PEERS)]
         for case, (own, *peers) in cases.items()
     ]
-    return ["call", "time", "error", *PEERS], lines
 
 
 def _error(row: Row) -> str:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from singimpact.cli.output import as_json_text, columns, count_option, emit, markdown, output_options, page_format, save
-from singimpact.inputs import InputError, unknown
+from singimpact.inputs import InputError, require_known
 from singimpact.progress import ProgressLine
 from singimpact.store import folder, write_text
 
@@ -271,9 +271,7 @@ def command(
     if form == "page" and groups:
         raise InputError(f"--format page is not accepted with {', '.join(groups)}: the page has the group public alone")
     chosen = ["public"] if form == "page" else list(dict.fromkeys(groups)) or usual(effort)
-    for group in chosen:
-        if group not in (*GROUPS, "states"):
-            raise unknown("group", group, (*GROUPS, "states"))
+    require_known("group", chosen, (*GROUPS, "states"))
     if store and "limit" not in chosen:
         raise InputError(
             f"--store is not accepted with {', '.join(chosen)}: give the group limit, whose ratios it keeps"
@@ -340,8 +338,8 @@ def _page(public: Measured, output: str | None) -> str:
     if output is not None:
         write_text(Path(output).with_suffix(".csv"), as_csv(public.rows))
         save(plotted(public), Path(output).with_suffix(".png"))
-    package = Path(__file__).parents[1]
-    answer = subprocess.run(["git", "-C", package, "rev-parse", "HEAD"], capture_output=True, text=True, check=False)
+    command = ["git", "-C", str(Path(__file__).parent), "rev-parse", "HEAD"]
+    answer = subprocess.run(command, capture_output=True, text=True, check=False)
     return page(markdown(*table(public.rows)), answer.stdout.strip() or "unknown")
 
 

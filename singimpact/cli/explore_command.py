@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -23,14 +24,16 @@ if TYPE_CHECKING:
 @click.option(
     "--between", nargs=2, metavar="LOW HIGH", help="Interval of the clearance.  [default: both sides of a swan]"
 )
-@click.option("--steps", type=click.IntRange(2, 1001), default=41, show_default=True, help="Positions of the slider.")
+@click.option(
+    "--points", "--steps", type=click.IntRange(2, 1001), default=41, show_default=True, help="Clearances of the slider."
+)
 @click.option("--html", metavar="FILE", help="Write the page to this file.  [default: open it in a browser]")
 @click.option("--json", "as_json", is_flag=True, help="Give the curves as JSON instead of a page.")
 @click.option("-o", "--output", metavar="FILE", help="The same as --html; with --json, the JSON file.")
 def command(
     path: str | None,
     between: tuple[str, str] | None,
-    steps: int,
+    points: int,
     html: str | None,
     as_json: bool,
     output: str | None,
@@ -42,26 +45,28 @@ def command(
     that needs no network and no other program. It has sliders for r and the parameters too; a click in the plane of
     launch phase and velocity starts an orbit, which the browser computes.
     """
+    if "--steps" in sys.argv:
+        click.echo("singimpact: --steps is --points now", err=True)
     file = _place(html, output)
     oscillator = take_model(_with_path(options, path))
     if as_json:
-        emit(as_json_text({"model": oscillator.to_dict(), **_told(_film(oscillator, between, steps))}), file)
+        emit(as_json_text({"model": oscillator.to_dict(), **_told(_film(oscillator, between, points))}), file)
         return
-    stored = kept_at(("explore", oscillator, between, steps), ("contourpy",))
+    stored = kept_at(("explore", oscillator, between, points), ("contourpy",))
     page = cache.recall(stored)
     if page is None:
         from singimpact.scenes.explore import explore_page
 
-        page = explore_page(_film(oscillator, between, steps)).encode()
+        page = explore_page(_film(oscillator, between, points)).encode()
         cache.keep(stored, page)
     _show(page.decode(), file)
 
 
-def _film(oscillator: Any, between: tuple[str, str] | None, steps: int) -> ClearanceFilm:
+def _film(oscillator: Any, between: tuple[str, str] | None, points: int) -> ClearanceFilm:
     from singimpact.scenes.clearance_frames import clearance_film
 
     with ProgressLine() as line:
-        return clearance_film(oscillator, between, steps, line.show)
+        return clearance_film(oscillator, between, points, line.show)
 
 
 def _place(html: str | None, output: str | None) -> str | None:

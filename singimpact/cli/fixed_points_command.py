@@ -7,7 +7,7 @@ from singimpact.cli.output import as_json_text, columns, emit, output_options
 
 @click.command()
 @click.argument("contact", metavar="tangency|swan", type=click.Choice(["tangency", "swan"]))
-@click.option("--r", "restitution", metavar="NUMBER", required=True, help="Restitution, a rational in (0, 1).")
+@click.option("--restitution", "--r", metavar="NUMBER", required=True, help="Restitution, a rational in (0, 1).")
 @click.option("--digits", type=int, default=50, show_default=True, help="Significant digits.")
 @output_options
 def command(contact: str, restitution: str, digits: int, as_json: bool, output: str | None) -> None:

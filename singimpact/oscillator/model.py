@@ -12,7 +12,7 @@ from singimpact.algebra.expressions import FUNCTIONS, Call, Expression, names_in
 from singimpact.algebra.numbers import constant, tree_of
 from singimpact.algebra.puiseux import Puiseux
 from singimpact.algebra.rings import to_sympy
-from singimpact.inputs import InputError, checked_methods, refuse, shown, unknown
+from singimpact.inputs import InputError, checked_methods, refuse, require_known, shown, unknown
 from singimpact.oscillator import rebound
 from singimpact.oscillator.period import checked_period, period_of
 from singimpact.store import read_bounded
@@ -269,9 +269,7 @@ def fields_of(text: str, source: str = "model file") -> dict[str, Any]:
         fields = tomllib.loads(text, parse_float=str)
     except (ValueError, RecursionError) as error:  # an integer of 5000 digits is a plain ValueError
         raise InputError(f"{source} is not TOML: {' '.join(str(error).split())}") from None
-    for key in fields:
-        if key not in FIELDS:
-            raise unknown(f"key in {source}:", key, FIELDS)
+    require_known(f"key in {source}:", fields, FIELDS)
     for key in REQUIRED:
         if key not in fields:
             raise InputError(f"{source} has no {key}: a model needs {', '.join(REQUIRED)}")

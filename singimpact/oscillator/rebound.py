@@ -11,6 +11,7 @@ from singimpact.algebra.puiseux import Puiseux, expansion
 from singimpact.inputs import InputError, refuse
 
 ACCEPTED = "a number in (0, 1], or an expression rho in v with rho(0) = 0 and -1 <= rho'(0) < 0, such as -0.8*v + v**2"
+PLASTIC = "; with 0 the mass stays on the wall after each impact, and osc.release(tau) of any r says when it lifts off"
 # terms of the expansion of rho at rest: more where the first ones cancel, fewer where their coefficients become long
 TERMS = (6, 24, 2)
 
@@ -33,7 +34,7 @@ def read(value: Any, parameters: dict[str, Expression]) -> Expression:
         raise refuse("restitution", value, ACCEPTED) from error
     good = _good(substitute(tree, parameters)) if "v" in names_in(tree) else compare(tree, 0) > 0 >= compare(tree, 1)
     if not good:
-        raise refuse("restitution", value, ACCEPTED)
+        raise refuse("restitution", value, ACCEPTED + PLASTIC * (str(tree) == "0"))
     return tree
 
 

@@ -79,7 +79,7 @@ class ExplorePage:
 
 
 @checked_keywords
-def explore(osc: Oscillator, between: Any = None, steps: int = SETTINGS.steps) -> ExplorePage:
+def explore(osc: Oscillator, between: Any = None, points: int = SETTINGS.steps) -> ExplorePage:
     """A page on which Z, H, P and gamma change as the clearance moves through the nearest swan.
 
     It has sliders for the restitution and the parameters too. A click in the plane of states starts an orbit.
@@ -87,7 +87,7 @@ def explore(osc: Oscillator, between: Any = None, steps: int = SETTINGS.steps) -
     Parameters
     ----------
     osc : the model. between : two clearances, the ends of the slider; both sides of the swan without them.
-    steps : places of the slider, from 2 to 1001.
+    points : clearances of the slider, from 2 to 1001.
 
     Returns
     -------
@@ -95,19 +95,19 @@ def explore(osc: Oscillator, between: Any = None, steps: int = SETTINGS.steps) -
 
     Raises
     ------
-    InputError : ends or steps that are none.
+    InputError : ends of an interval, or points, that are not valid.
 
     Examples
     --------
-    >>> page = explore(Oscillator("x", "cos(2*t)", "0.9", "1/2"), steps=2)
+    >>> page = explore(Oscillator("x", "cos(2*t)", "0.9", "1/2"), points=2)
     >>> print(repr(page).partition(", ")[0])
     ExplorePage(2 clearances from 1 to 1.13708
     """
     if not isinstance(osc, Oscillator):
         raise refuse("osc", osc, "an ImpactOscillator")
-    whole("steps", steps, 2, 1001)
+    whole("points", points, 2, 1001)
     with ProgressLine() as line:
-        film = clearance_film(osc, between, steps, line.show)
+        film = clearance_film(osc, between, points, line.show)
     return ExplorePage(film, explore_page(film))
 
 

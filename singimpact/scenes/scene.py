@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.numbers import as_float, constant
-from singimpact.inputs import InputError, refuse, shown, unknown
+from singimpact.inputs import InputError, refuse, require_known, shown, unknown
 from singimpact.oscillator.model import FIELDS, Oscillator, read_fields
 from singimpact.scenes.layer_data import Results
 from singimpact.scenes.style import PENS
@@ -183,9 +183,7 @@ class Scene:
     def read(cls, path: str | Path) -> Scene:
         """A scene from a TOML file: the fields of a scene, with [model] as in a model file, or model = "FILE.toml"."""
         fields = _toml(path)
-        for key in fields:
-            if key not in FILE_KEYS:
-                raise unknown(f"key in scene file {shown(str(path))}:", key, FILE_KEYS)
+        require_known(f"key in scene file {shown(str(path))}:", fields, FILE_KEYS)
         if "model" not in fields or "tau" not in fields:
             raise InputError(f"scene file {shown(str(path))} has no {'model' if 'model' not in fields else 'tau'}")
         fields["model"] = _model(fields["model"], Path(path))
@@ -345,9 +343,7 @@ def _model(fields: Any, path: Path) -> Oscillator:
         return Oscillator(**read_fields(path.parent / fields))
     if not isinstance(fields, dict):
         raise refuse("model", fields, "a table [model] or the name of a model file")
-    for key in fields:
-        if key not in FIELDS:
-            raise unknown("key in [model]:", key, FIELDS)
+    require_known("key in [model]:", fields, FIELDS)
     for key in FIELDS[:4]:
         if key not in fields:
             raise InputError(f"[model] has no {key}: a model needs {', '.join(FIELDS[:4])}")

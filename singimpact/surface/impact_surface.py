@@ -22,7 +22,7 @@ from singimpact.contact.points import TangencyPoint, tangency_points
 from singimpact.flights.impact_map import first_hit
 from singimpact.flights.inverse_map import backwards
 from singimpact.flights.model_numbers import fastest_rate
-from singimpact.inputs import refuse
+from singimpact.inputs import checked_keywords, refuse
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status
 from singimpact.surface.curve import RESOLUTION, STATES, SURFACE, Curve, Mark, Window
@@ -196,7 +196,7 @@ class ImpactSurface:
 
     Parameters
     ----------
-    model : the oscillator. tau, t : ends of the window; t of either sign, or a polynomial's zeros are cut off.
+    osc : the oscillator. tau, t : ends of the window; t of either sign, or a polynomial's zeros are cut off.
     resolution : a share of the window's longer side; chords of the curves stay within half of it.
 
     Attributes
@@ -210,11 +210,12 @@ class ImpactSurface:
     [(True, 2)]
     """
 
-    def __init__(self, model: Oscillator, tau: Any, t: Any, resolution: Any = RESOLUTION.usual) -> None:
-        if not isinstance(model, Oscillator):
-            raise refuse("model", model, "an ImpactOscillator")
-        self.model, self.window = model, Window.read(tau, t, resolution)
-        self._rest = RestFlights(model)
+    @checked_keywords
+    def __init__(self, osc: Oscillator, tau: Any, t: Any, resolution: Any = RESOLUTION.usual) -> None:
+        if not isinstance(osc, Oscillator):
+            raise refuse("osc", osc, "an ImpactOscillator")
+        self.model, self.window = osc, Window.read(tau, t, resolution)
+        self._rest = RestFlights(osc)
 
     def __repr__(self) -> str:
         (a, b), (c, d) = self.window.x, self.window.y

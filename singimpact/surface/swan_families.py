@@ -16,7 +16,7 @@ from singimpact.contact.swans import swan_points_over_clearance
 from singimpact.flights.flight_path import many_paths
 from singimpact.flights.impact_map import first_hit
 from singimpact.flights.inverse_map import backwards
-from singimpact.inputs import InputError, unknown
+from singimpact.inputs import InputError, require_known
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration as wall_acceleration, largest_push
 from singimpact.result import Result
@@ -159,9 +159,7 @@ def swan_curves(model: Oscillator, over: tuple[str, str], between: tuple[Any, An
     [True]
     """
     first, second = over
-    for name in over:
-        if name != "clearance" and name not in model.parameters:
-            raise unknown("parameter", name, ["clearance", *model.parameters])
+    require_known("parameter", over, ["clearance", *model.parameters])
     along, across = (window_ends(name, ends) for name, ends in zip(over, between, strict=True))
     rows: list[list[tuple[float, float, Transition]]] = []
     for value in np.linspace(*across, STEPS + 1).tolist():

@@ -13,7 +13,7 @@ from singimpact.algebra.numbers import tree_of
 from singimpact.algebra.precision import kept_property
 from singimpact.algebra.rings import EXACT, SYMBOLIC, SymbolRing, to_sympy
 from singimpact.contact.contact import Contact, acceleration_jet, derivative_name, force_jet
-from singimpact.inputs import InputError, refuse, unknown
+from singimpact.inputs import InputError, refuse, require_known
 from singimpact.oscillator.model import Oscillator, require_smooth_rho
 from singimpact.oscillator.rho_series import TASK
 
@@ -122,9 +122,8 @@ class LetteredModel:
             raise refuse("model", self.model, "an ImpactOscillator")
         if isinstance(self.keep, str) or not isinstance(self.keep, Sequence) or not self.keep:
             raise refuse("keep", self.keep, "a sequence of names of parameters")
+        require_known("parameter", self.keep, self.model.parameters)
         for name in self.keep:
-            if name not in self.model.parameters:
-                raise unknown("parameter", name, list(self.model.parameters))
             if TAKEN.fullmatch(name):
                 raise refuse("keep", name, "a parameter whose name is no letter of the series: give it another name")
 

@@ -104,3 +104,37 @@ def test_styles_go_to_lines_and_the_old_name_of_the_axes_still_works():
 
 def test_a_figure_has_the_name_of_its_number():
     assert si.figure("12").axes
+
+
+@pytest.mark.parametrize(
+    ("call", "told"),
+    [
+        (lambda osc: si.explore(osc, steps=2), r"explore\(steps=...\) is explore\(points=...\) now"),
+        (lambda osc: osc.explore(steps=2), r"explore\(steps=...\) is explore\(points=...\) now"),
+        (lambda osc: si.ImpactSurface(model=osc, tau=(-1, 1), t=(0, 1)), r"ImpactSurface\(osc=...\) now"),
+    ],
+)
+def test_an_old_name_of_an_argument_works_with_a_warning(call, told):
+    with pytest.warns(FutureWarning, match=told) as warned:
+        assert call(si.linear(2, "0.9", "0.5")) is not None
+    assert warned[0].filename == __file__
+
+
+def test_old_names_are_no_longer_those_of_any_argument():
+    from inspect import signature
+
+    from singimpact.inputs import RENAMED
+
+    studies = [si.explore, si.basins, si.bifurcation, si.classify, si.ImpactSurface, si.branch, si.animate, si.manifold]
+    names = {name for study in studies for name in signature(study).parameters}
+    assert not names & set(RENAMED)
+    with pytest.raises(InputError, match="explore has no argument 'stepps': give osc, between, points"):
+        si.explore(si.linear(2, "0.9", "0.5"), stepps=2)
+
+
+def test_a_plastic_impact_is_refused_with_what_there_is():
+    with pytest.raises(InputError, match=r"restitution = 0 is not accepted.*with 0 the mass stays on the wall"):
+        si.linear(2, 0, 0)
+    with pytest.raises(InputError) as refused:
+        si.linear(2, 0, "-0.1")
+    assert "stays on the wall" not in str(refused.value)

@@ -41,7 +41,7 @@ def _case(r: str, effort: Effort) -> Case:
     stops = STOPS[:2] if effort.quick else STOPS
     own = [Method("singimpact", "doubles", lambda: [osc.chatter_limit(*STATE).tau])]
     own += [
-        Method("singimpact", f"digits {d}", partial(_digits, osc, d), epsilon=10.0**-d)
+        Method("singimpact", f"digits {d}", lambda d=d: [osc.chatter_limit(*STATE, digits=d).tau], epsilon=10.0**-d)
         for d in ((20,) if effort.quick else (20, 35))
     ]
     methods, skipped = with_peers(
@@ -52,10 +52,6 @@ def _case(r: str, effort: Effort) -> Case:
     )
     kappa = condition(lambda tau, v: float(osc.chatter_limit(tau, v).tau), 1.2, 0.01, 1e-4)
     return Case(f"linear, r = {r}", methods, [values()[NAME.format(r)]], [kappa], skipped)
-
-
-def _digits(osc: Any, digits: int) -> list[Any]:
-    return [osc.chatter_limit(*STATE, digits=digits).tau]
 
 
 def _flown(name: str, fly: Callable[[Problem], tuple[Any, Any]], problem: Problem, stop: float) -> Method:
@@ -148,7 +144,7 @@ def _threshold(effort: Effort) -> Case:
     widths = WIDTHS[:2] if effort.quick else WIDTHS
     own = [Method("singimpact", "doubles", lambda: [threshold(osc, "pi/2.8").v])]
     own += [
-        Method("singimpact", f"digits {d}", partial(_threshold_digits, osc, d), epsilon=10.0**-d)
+        Method("singimpact", f"digits {d}", lambda d=d: [threshold(osc, "pi/2.8", digits=d).v], epsilon=10.0**-d)
         for d in ((30,) if effort.quick else (20, 30, 40))
     ]
     methods, skipped = with_peers(
@@ -160,10 +156,6 @@ def _threshold(effort: Effort) -> Case:
     kappa = condition(lambda tau, _: float(threshold(osc, tau).v), pi / 2.8, 1.0, 1e-4)
     truth = values()["threshold.linear[w=2.8,c=0,r=0.5](pi/2.8)"]
     return Case("linear, r = 0.5", methods, [truth], [kappa], skipped)
-
-
-def _threshold_digits(osc: Any, digits: int) -> list[Any]:
-    return [threshold(osc, "pi/2.8", digits=digits).v]
 
 
 def _bisected(name: str, fly: Callable[[Problem], tuple[Any, Any]], problem: Problem, width: float) -> Method:

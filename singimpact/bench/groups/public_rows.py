@@ -55,8 +55,11 @@ def _beside(title: str, case: Case, *loops: Method) -> Case:
     """A case of another group: the first call of the package, the peers by the names of their programs, the loops."""
     own, *others = case.methods
     # "heyoka, terminal event" is heyoka; further settings of the package have no column
-    programs = [(method, method.name.partition(",")[0].split()[0]) for method in others]
-    peers = [replace(method, name=program, aim=NO_AIM) for method, program in programs if program != own.name[:10]]
+    peers = [
+        replace(method, name=method.name.partition(",")[0].split()[0], aim=NO_AIM)
+        for method in others
+        if not method.name.startswith("singimpact")
+    ]
     return replace(case, name=title, methods=[replace(own, name="singimpact", aim=NO_AIM), *peers, *loops])
 
 

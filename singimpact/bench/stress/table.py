@@ -10,7 +10,7 @@ from typing import Any
 from singimpact.bench.stress import chattered, closed_forms, expanded, flown, named
 from singimpact.bench.stress.judging import LIMITS, Cell, Function, worst
 from singimpact.bench.stress.launches import PLACES
-from singimpact.inputs import unknown
+from singimpact.inputs import require_known, unknown
 
 FUNCTIONS: dict[str, Function] = {
     each.name: each for room in (flown, closed_forms, chattered, expanded, named) for each in room.FUNCTIONS
@@ -30,9 +30,7 @@ def chosen(names: Sequence[str], limit: str | None) -> list[tuple[Function, str]
     >>> [(function.name, place) for function, place in chosen(["acceleration"], "a -> 0")]
     [('acceleration', 'a -> 0')]
     """
-    for name in names:
-        if name not in FUNCTIONS:
-            raise unknown("function", name, tuple(FUNCTIONS))
+    require_known("function", names, FUNCTIONS)
     if limit is not None and limit not in PLACES:
         raise unknown("place", limit, tuple(PLACES))
     rows = [FUNCTIONS[name] for name in dict.fromkeys(names)] or list(FUNCTIONS.values())

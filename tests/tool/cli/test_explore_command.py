@@ -5,13 +5,13 @@ import webbrowser
 
 import pytest
 
-LINEAR = ["--omega", "2", "--clearance", "0.9", "--restitution", "1/2", "--steps", "2"]
+LINEAR = ["--omega", "2", "--clearance", "0.9", "--restitution", "1/2", "--points", "2"]
 
 
 def test_page_in_a_file(singimpact, tmp_path):
     model = tmp_path / "model.toml"
     model.write_text('f = "x"\ng = "cos(2*t)"\nclearance = "0.9"\nrestitution = "1/2"\n')
-    done = singimpact("explore", model, "--steps", "2", "--html", tmp_path / "page.html")
+    done = singimpact("explore", model, "--points", "2", "--html", tmp_path / "page.html")
     assert (done.exit_code, done.output) == (0, "")
     assert "<title>x&#x27;&#x27; + x = cos(2*t), x ≥ c</title>" in (tmp_path / "page.html").read_text()
 

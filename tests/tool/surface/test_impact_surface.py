@@ -123,7 +123,7 @@ def test_what_is_not_asked_for_is_not_flown():
 @pytest.mark.parametrize(
     ("ask", "told"),
     [
-        (lambda: ImpactSurface(3, (0, 1), (0, 1)), "model = 3"),
+        (lambda: ImpactSurface(3, (0, 1), (0, 1)), "osc = 3"),
         (lambda: ImpactSurface(DUFFING, (1, 0), (0, 1)), "window of tau"),
         (lambda: ImpactSurface(DUFFING, (0, 1), 4), "window of t"),
         (lambda: ImpactSurface(DUFFING, (0, 1), (0, 1), 0.2), "resolution = 0.2"),
