@@ -7,7 +7,7 @@ from singimpact.handed_on import names_of
 
 _FILES = {
     "linear": "linear_form",
-    "model": "Oscillator fields_of read_fields",
+    "model": "FIELDS Oscillator fields_of read_fields",
     "rho_series": "series_of_rho",
     "wall_acceleration": "acceleration",
 }
