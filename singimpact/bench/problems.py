@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from singimpact.impact_oscillator import ImpactOscillator, linear
-from singimpact.inputs import unknown
+from singimpact.inputs import InputError, unknown
 
 DATA = Path(__file__).parent / "data"
 FAMILIES = ("linear", "duffing")
@@ -80,5 +80,7 @@ def values() -> dict[str, str]:
 
 
 def _rows(name: str) -> list[dict[str, Any]]:
+    if not (DATA / name).exists():
+        raise InputError(f"the reference states {name} are not in the wheel: install from the source distribution")
     with (DATA / name).open(newline="", encoding="utf-8") as stream:
         return list(csv.DictReader(stream))
