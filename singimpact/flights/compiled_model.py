@@ -198,9 +198,8 @@ class CompiledModel:
     def _work(self, kind: int, states: tuple[Array, ...], *results: Array) -> None:
         """Work on flights, one a state; interpreted until it is compiled, unless Python's numbers refuse it."""
         name, count = self.main if self.linear else "judge_entry", states[0].size
-        entry = self._unless_done(
-            name, self.price * count, lambda: INTERPRETED[kind](self.interpreter, *states, *results)
-        )
+        price = self.price * (1 if self.linear or kind != entries.VARIATIONS else LIMITS.varied)
+        entry = self._unless_done(name, price * count, lambda: INTERPRETED[kind](self.interpreter, *states, *results))
         if entry is not None:
             self._call(entry, (kind, count, 0), states, *results)
 
@@ -509,7 +508,9 @@ class CompiledModel:
     def _judged(self, tau: Array, v: Array, removed: Array, room: int) -> Array:
         out = np.empty((11, tau.size))
         entry = self._unless_done(
-            "judge_entry", self.price * tau.size, lambda: self.interpreter.judged(tau, v, removed, out, room)
+            "judge_entry",
+            self.price * LIMITS.varied * tau.size,
+            lambda: self.interpreter.judged(tau, v, removed, out, room),
         )
         if entry is not None:
             job = entries.JUDGE, tau.size, room
