@@ -4,8 +4,14 @@ from __future__ import annotations
 
 import contextlib
 import logging
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Any
+
+from sphinx.util.display import status_iterator
+
+Steps = Callable[..., Iterator[Any]]
+"""Names one after the other, with a line of progress for each."""
 
 
 def errata() -> str:
@@ -32,7 +38,7 @@ def graph(place: Path) -> str:
     from singimpact.paper.claims.index import as_svg, dependants
 
     found = si.verify()
-    _put(place / "graph.svg", as_svg(INDEX, {v.id: v.in_words if v.corrected else v.worth for v in found}))
+    put(place / "graph.svg", as_svg(INDEX, {v.id: v.in_words if v.corrected else v.worth for v in found}))
     above = {v.id: [name for name, entry in INDEX.items() if v.id in entry.rests_on] for v in found}
     rows = [
         f"| `{v.id}` | {v.title} | {v.kind} | {v.effective} | {', '.join(v.effective_modulo) or '-'} "
@@ -80,15 +86,16 @@ def commands() -> str:
     return "\n".join(parts)
 
 
-def figures(place: Path) -> str:
+def figures(place: Path, steps: Steps) -> str:
     """The paper's figures with what they show, and the claims that they illustrate; the pictures go beside the page."""
-    from singimpact.paper.figures import BEYOND, FIGURES, picture
+    from singimpact.paper.figures import BEYOND, FIGURES
     from singimpact.paper.figures.figure_rendering import drawn
+    from singimpact.paper.figures.registry import kept_picture
 
     parts = ["# The figures", "", "Drawn from computed data by `singimpact figure all -o FOLDER`; those beyond the "
              "paper, B1, B2, ..., by `singimpact figure beyond -o FOLDER`.", ""]  # fmt: skip
-    for number in (*FIGURES, *BEYOND):
-        shown = picture(number)
+    for number in steps((*FIGURES, *BEYOND), "drawing figures... ", "figure {}"):
+        shown = kept_picture(number)
         drawn(shown).savefig(place / f"figure{number}.png", dpi=200)
         told = ", ".join(f"`{claim}`" for claim in shown.claims)
         parts += [f"## {number}. {shown.title}", "", f"![{shown.title}](figure{number}.png)", "",
@@ -96,20 +103,8 @@ def figures(place: Path) -> str:
     return "\n".join(parts)
 
 
-def border(place: Path) -> None:
-    """The picture of a border orbit's cascade."""
-    from matplotlib.figure import Figure
-
-    import singimpact as si
-    from singimpact.scenes.border_picture import draw_border
-
-    (found,) = si.border_orbits(si.linear("2.8", "0.6", "0.3"), between=(0.47, 0.475), points=5)
-    axes = Figure(figsize=(7.2, 5.2), layout="constrained").subplots(2, sharex=True, height_ratios=(3, 2))
-    draw_border(found, *axes).figure.savefig(place / "border_cascade.png", dpi=110)
-
-
 def branches(place: Path) -> None:
-    """The pictures of the page on branches."""
+    """The pictures of the page on branches that the gallery does not have."""
     from matplotlib.figure import Figure
 
     import singimpact as si
@@ -119,13 +114,6 @@ def branches(place: Path) -> None:
 
     def save(shown: Any, name: str) -> None:
         shown.figure.savefig(place / f"{name}.png", dpi=110)
-
-    osc = si.linear("0.8", -1, "0.8", damping="0.1", amplitude="-0.45")
-    once = si.branch(osc.periodic(1, 1)[0], "amplitude", (-0.6, -0.3))
-    (doubling, graze) = once.events
-    twice = si.branch(doubling.others()[0], "amplitude", (-0.6, -0.3))
-    free = si.branch(graze.others()[0], "amplitude", (-0.6, -0.3))
-    save(si.plot([once, twice, free], axes()), "branch_graze")
 
     ellipses = [si.linear("4.3", "0.001", "0.6").periodic(1, k)[0] for k in (1, 2)]
     save(si.plot([si.branch(each, "clearance", (-2, 2), step=0.05) for each in ellipses], axes()), "branch_ellipses")
@@ -142,16 +130,12 @@ def branches(place: Path) -> None:
     si.plot(found, adding).set_xlabel("$q$: the amplitude is $1 + 10^q$ times that of the graze")
     save(adding, "branch_periods")
 
-    resonant = si.linear(1, -1, "0.8", damping="0.1", amplitude="-0.12")
-    events = si.branch(resonant.periodic(1, 1)[0], "amplitude", (-0.3, -0.05)).events
-    curves = [si.event_curve(each, ("amplitude", "omega"), ((-0.3, -0.05), (0.9, 1.1))) for each in events]
-    save(si.plot(curves, axes()), "branch_resonance")
 
-
-def gallery(page: Path, place: Path) -> None:
-    """The pictures of the gallery and of named models, each by the lines that its page shows."""
+def named_models(page: Path, place: Path) -> None:
+    """The pictures of a page of a named model, by the lines that the page shows."""
     import re
 
+    import matplotlib.pyplot as plt
     import numpy as np
 
     import singimpact as si
@@ -159,24 +143,19 @@ def gallery(page: Path, place: Path) -> None:
     for text in re.findall(r"```python\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL):
         space: dict[str, Any] = {"si": si}
         name = text.partition("\n")[0].removeprefix("# picture: ")
-        exec(compile(text, f"gallery: {name}", "exec"), space)
+        exec(compile(text, f"{page.name}: {name}", "exec"), space)
         figure = np.ravel(space["axes"])[0].figure
         figure.savefig(place / f"gallery_{name}.png", dpi=110)
+        plt.close(figure)
 
 
 def manifolds(place: Path) -> None:
-    """The pictures of the page on manifolds."""
+    """The pictures of the page on manifolds that the gallery does not have."""
     from matplotlib.figure import Figure
 
     import singimpact as si
 
-    osc = si.linear("2.8", "0.1", "0.8", amplitude=-1)
-    saddle = next(orbit for orbit in osc.periodic(3, 3) if not orbit.stable)
-    both = [si.manifold(saddle, stable, v=1) for stable in (True, False)]
-    over = si.plot(both, ax=si.plot(si.basins(osc, ((0, "2*pi/2.8"), (0, 1)), 600)))
-    over.figure.savefig(place / "manifold_basins.png", dpi=110)
     found = si.homoclinic_points(si.linear("2.8", 0, "0.8").periodic(1, 1)[0])
-    si.plot(found).figure.savefig(place / "manifold_tangle.png", dpi=110)
     certified = si.plot(found[0].certified(), ax=si.plot(list(found.manifolds)))
     certified.figure.savefig(place / "manifold_certified.png", dpi=110)
     si.plot(found[0].horseshoe()).figure.savefig(place / "manifold_horseshoe.png", dpi=110)
@@ -185,7 +164,7 @@ def manifolds(place: Path) -> None:
     changes = si.transitions(waves, "h", ("-1.5", "-1.1"), (-2, 2), orbits=[(1, 1)])
     swan = next(i for i, each in enumerate(changes) if each.kind == "swan, negative")
     sides = Figure(figsize=(11.0, 5.4), layout="constrained").subplots(1, 2, sharey=True)
-    si.plot(changes.both_sides(swan, apart="0.05", v=(0, "0.8"), size=400), sides)
+    si.plot(changes.both_sides(swan, apart="0.05", v=(0, "0.8"), size=250), sides)
     sides[0].figure.savefig(place / "transition_sides.png", dpi=110)
 
 
@@ -221,34 +200,38 @@ def gamma_proved(place: Path) -> None:
 LIVE = ("shaw_holmes", "budd_dux", "duffing_friction", "luck_mehta", "pendulum", "universal_swan")
 
 
-def live(place: Path) -> None:
-    """Interactive pages of named models."""
+def live(name: str, place: Path) -> None:
+    """The interactive page of a named model."""
     import singimpact as si
 
-    for name in LIVE:
-        si.models[name]().explore(steps=21).save(place / f"{name}.html")
+    si.models[name]().explore(steps=21).save(place / f"{name}.html")
 
 
 def build(app: Any) -> None:
     """Write the pages into the folder `computed` beside those that are written by hand."""
     from singimpact.store import folder
 
+    def steps(names: Iterable[Any], summary: str, words: str = "{}") -> Iterator[Any]:
+        """The names one after the other; each is a line of Sphinx's progress."""
+        names = tuple(names)
+        return status_iterator(names, summary, "darkgreen", len(names), app.verbosity, words.format)
+
     place = folder(Path(app.srcdir) / "computed")
-    pages = {"errata.md": errata, "claims.md": claims, "commands.md": commands, "figures.md": lambda: figures(place),
-             "graph.md": lambda: graph(place)}  # fmt: skip
-    for name, page in pages.items():
-        _put(place / name, page())
-    branches(place)
-    for page in (Path(app.srcdir) / "gallery.md", *sorted((Path(app.srcdir) / "models").glob("*.md"))):
-        gallery(page, place)
-    manifolds(place)
-    gamma_proved(place)
-    border(place)
-    live(folder(place / "pages" / "explore"))
+    pages = {"claims": claims, "errata": errata, "graph": lambda: graph(place), "commands": commands,
+             "figures": lambda: figures(place, steps)}  # fmt: skip
+    for name in steps(pages, "computing pages... "):
+        put(place / f"{name}.md", pages[name]())
+    pictures = {"branches": branches, "manifolds": manifolds, "gamma_proved": gamma_proved}
+    for name in steps(pictures, "drawing pictures... "):
+        pictures[name](place)
+    for page in steps(sorted((Path(app.srcdir) / "models").glob("*.md")), "drawing named models... ", "{0.stem}"):
+        named_models(page, place)
+    for name in steps(LIVE, "writing live pages... "):
+        live(name, folder(place / "pages" / "explore"))
 
 
-def _put(path: Path, text: str) -> None:
-    """A page that has not changed is not read again."""
+def put(path: Path, text: str) -> None:
+    """Write a page; one that has not changed is not read again."""
     from singimpact.store import write_text
 
     with contextlib.suppress(OSError):
