@@ -21,7 +21,7 @@ sphinx_gallery_conf = {
     "image_scrapers": ("matplotlib", "examples.held_pictures"),
     "reset_modules": ("matplotlib", "examples.remove_written"),
     "reset_modules_order": "both",
-    "within_subsection_order": "FileNameSortKey",
+    "within_subsection_order": "examples.in_order",
     "nested_sections": False,
     "capture_repr": (),
     "first_notebook_cell": "%matplotlib inline",
@@ -38,7 +38,7 @@ html_title = f"singimpact {__version__}"
 html_static_path = ["_static"]
 (Path(__file__).parent / "computed" / "pages").mkdir(parents=True, exist_ok=True)
 html_extra_path = ["computed/pages"]  # interactive pages of named models
-html_css_files = ["narrow.css", "dark.css"]
+html_css_files = ["narrow.css", "pictures.css"]
 smartquotes_action = "D"  # dashes, and no quotes: x'' is a second derivative
 add_module_names = False
 autodoc_typehints = "none"

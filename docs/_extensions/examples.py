@@ -9,43 +9,50 @@ from typing import Any
 
 USES = "computed/gallery_uses"
 """Where sphinx-gallery writes which script uses which name."""
-MOST = 6
+MOST = 4
 """Thumbnails under one entry of the reference."""
+FIRST = ("plot_own_model.py", "plot_orbit.py", "plot_animation.py", "plot_bifurcation.py", "plot_branch.py")
+"""The first scripts of their sections."""
 WRITTEN = (".csv", ".gif", ".pdf", ".png")
 """Endings of files that scripts write beside themselves."""
 
 
 def held_pictures(block: Any, block_vars: dict[str, Any], gallery_conf: dict[str, Any]) -> str:
     """Markup for the animations, and figures that pyplot does not have, that variables of a script hold."""
-    import matplotlib.pyplot as plt
     from matplotlib.figure import Figure
     from sphinx_gallery.scrapers import figure_rst
 
     from singimpact.scenes.orbit_picture import OrbitAnimation
 
-    numbered = [plt.figure(number) for number in plt.get_fignums()]
+    held = {id(thing): thing for thing in block_vars["example_globals"].values()}
     pictures = []
-    for thing in block_vars["example_globals"].values():
-        ending = ".gif" if isinstance(thing, OrbitAnimation) else ".png"
+    for thing in held.values():
         if isinstance(thing, OrbitAnimation):
-            write = thing.save
-        elif isinstance(thing, Figure) and thing not in numbered and not hasattr(thing, "shown_in_gallery"):
-            write, thing.shown_in_gallery = thing.savefig, True
+            ending, write = ".gif", thing.save
+        elif isinstance(thing, Figure) and getattr(thing, "number", None) is None:
+            ending, write = ".png", thing.savefig
         else:
             continue
         picture = Path(next(block_vars["image_path_iterator"])).with_suffix(ending)
         write(picture)
         pictures.append(picture)
-    plt.close("all")
     return figure_rst(pictures, gallery_conf["src_dir"]) if pictures else ""
 
 
 def remove_written(gallery_conf: dict[str, Any], path: str | None, when: str) -> None:
-    """Remove what a script has written into its folder."""
+    """Close the figures of others before a script, and remove what it has written into its folder after it."""
+    import matplotlib.pyplot as plt
+
+    plt.close("all")
     folder = Path(path).parent if path and when == "after" else None
     for file in folder.iterdir() if folder else ():
         if file.suffix in WRITTEN:
             file.unlink()
+
+
+def in_order(name: str) -> tuple[int, str]:
+    """The place of a script in its section: those that a newcomer meets first, then the others by name."""
+    return FIRST.index(name) if name in FIRST else len(FIRST), name
 
 
 def thing_of(path: str) -> Any:

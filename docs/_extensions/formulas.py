@@ -7,7 +7,7 @@ from typing import Any
 MARKUP = re.compile(r"[*|]|(?<=\w)_(?=\W|$)")
 FIELD = re.compile(r"^(\w+(?:, \w+)*) : (.*)$")
 NEXT = re.compile(r"(?<=[.;]) (?=\w+(?:, \w+)* : )")  # several fields may share a line
-NAMED = ("Parameters", "Attributes", "Returns")
+NAMED = ("Parameters", "Attributes", "Returns", "Raises")
 
 
 def readable(app: Any, what: str, name: str, thing: Any, options: Any, lines: list[str]) -> None:

@@ -7,7 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from computed import put
+from latex2mathml.converter import convert
 
+FORMULA = re.compile(r"\$([^$<>]+)\$")
 TABLES = re.compile(r"<(table|style|svg|img)\b")
 
 
@@ -34,7 +36,8 @@ def shown(output: dict[str, Any], picture: Path) -> str:
         return f"$${lines_of(data['text/latex']).strip().strip('$')}$$"
     html = lines_of(data.get("text/html", ""))
     if TABLES.search(html):
-        return fenced("{raw} html", f'<div class="notebook-output">{html}</div>')
+        formulas = FORMULA.sub(lambda hit: f'<div class="formula">{convert(hit[1])}</div>', html)
+        return fenced("{raw} html", f'<div class="notebook-output">{formulas}</div>')
     text = lines_of(output.get("text", data.get("text/plain", "")))
     return fenced("text", text) if text.strip() else ""
 

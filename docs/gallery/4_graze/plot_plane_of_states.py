@@ -11,8 +11,9 @@ import matplotlib.pyplot as plt
 import singimpact as si
 
 osc = si.linear(2, "0.7", "0.5")
-scene = si.Scene(osc, ("discontinuities", "gamma", "foliation"), tau=(-1.2, 1.0), v=(0, 0.3), pixels=500)
-si.plot(scene)
+scene = si.Scene(osc, ("discontinuities", "gamma", "foliation"), tau=(-1.2, 1.0), v=(0, 0.3), pixels=600)
+figure, axes = plt.subplots(figsize=(7, 5), layout="constrained")
+scene.draw(axes)
 plt.show()
 
 # %%

@@ -14,8 +14,8 @@ import singimpact as si
 phase = np.linspace(1, 2.5, 60)
 figure, axes = plt.subplots(figsize=(7, 4), layout="constrained")
 for restitution in ("0.3", "0.5", "0.7", "0.9"):
-    border = si.linear(2, "0.3", restitution).threshold(phase)
-    axes.plot(phase, border.v, label=f"r = {restitution}")
+    osc = si.linear(2, "0.3", restitution)
+    axes.plot(phase, osc.threshold(phase).v, label=f"r = {restitution}")
 axes.set(xlabel="phase of launch", ylabel="velocity on gamma", ylim=0)
 axes.legend(frameon=False)
 plt.show()
