@@ -164,7 +164,7 @@ def manifolds(place: Path) -> None:
     changes = si.transitions(waves, "h", ("-1.5", "-1.1"), (-2, 2), orbits=[(1, 1)])
     swan = next(i for i, each in enumerate(changes) if each.kind == "swan, negative")
     sides = Figure(figsize=(11.0, 5.4), layout="constrained").subplots(1, 2, sharey=True)
-    si.plot(changes.both_sides(swan, apart="0.05", v=(0, "0.8"), size=250), sides)
+    si.plot(changes.both_sides(swan, apart="0.05", v=(0, "0.8"), size=160), sides)
     sides[0].figure.savefig(place / "transition_sides.png", dpi=110)
 
 

@@ -30,12 +30,14 @@ def site(request, tmp_path_factory):
 
 @pytest.mark.slow
 def test_pages_are_there(site, clone):
-    pages = ["index", "tutorial", "gallery", "how_to", "reference", "conventions", "trust", "stress", "benchmarks"]
+    pages = ["index", "install", "tutorial", "notebooks", "computed/gallery/index", "how_to", "reference"]
+    pages += ["conventions", "trust", "stress", "benchmarks"]
     ideas = ["index", "impact_surface", "regular", "tangency", "swan", "unfolding", "one_structure"]
     ideas += ["branches", "gamma_proved", "manifolds"]
     computed = ["errata", "claims", "commands", "figures"]
     pages += ["changelog", "citation", "bibliography", "faq", "models"]
     pages += [f"reference/{path.stem}" for path in (clone / "docs" / "reference").glob("*.md")]
+    pages += [f"computed/notebooks/{path.stem}" for path in (clone / "notebooks").glob("*.ipynb")]
     pages += [f"explanation/{name}" for name in ideas] + [f"computed/{name}" for name in computed]
     assert [page for page in pages if (site / f"{page}.html").stat().st_size < 3000] == []
 
@@ -45,6 +47,90 @@ def test_every_command_and_figure_is_there(site):
     told = (site / "computed" / "commands.html").read_text()
     assert [name for name in COMMANDS if f"singimpact {name}" not in told] == []
     assert len(list((site / "_images").glob("figure[0-9]*.png"))) == 17
+
+
+def scripts(clone):
+    return sorted((clone / "docs" / "gallery").glob("*/plot_*.py"))
+
+
+def links(page, ending):
+    """The files with an ending to which a page of the site links."""
+    found = re.findall(rf'href="([^"#:]+{re.escape(ending)})"', page.read_text())
+    return [(page.parent / link).resolve() for link in found]
+
+
+@pytest.mark.slow
+def test_each_case_of_the_gallery_has_a_picture_a_script_and_a_notebook(site, clone):
+    assert len(scripts(clone)) >= 20
+    index = (site / "computed" / "gallery" / "index.html").read_text()
+    for script in scripts(clone):
+        page = site / "computed" / "gallery" / script.parent.name / f"{script.stem}.html"
+        assert f'href="{script.parent.name}/{page.name}"' in index
+        assert re.search(rf'src="[^"]*sphx_glr_{script.stem}_(thumb|001)\.(png|gif)"', index), script
+        assert len(re.findall(rf'src="[^"]*sphx_glr_{script.stem}_\d+\.(?:png|gif)"', page.read_text())) == 1, script
+        for ending in (".py", ".ipynb"):
+            (file,) = links(page, ending)
+            assert file.name == f"{script.stem}{ending}"
+            assert file.is_file()
+
+
+def test_a_case_of_the_gallery_is_short_and_ends_with_a_caption(clone):
+    for script in scripts(clone):
+        words, code, caption = re.fullmatch(r'"""(.*?)"""\n(.*?)# %%\n(.*)', script.read_text(), re.DOTALL).groups()
+        title, line, sentences = words.strip().split("\n", 2)
+        assert len(title) == len(line), script
+        assert sentences.strip().endswith(".")
+        assert caption.strip().endswith("."), script
+        lines = [line for line in code.splitlines() if line and not line.startswith(("import ", "from "))]
+        assert len(lines) <= 20, script
+
+
+@pytest.mark.slow
+def test_a_script_leaves_no_file_beside_it(site, clone):
+    files = [path for path in (clone / "docs" / "gallery").rglob("*") if path.is_file() and path.suffix != ".pyc"]
+    assert {path.name for path in files} - {path.name for path in scripts(clone)} == {".gitignore", "README.rst"}
+
+
+@pytest.mark.slow
+def test_an_entry_of_the_reference_links_its_examples(site):
+    models, series = ((site / "reference" / f"{name}.html").read_text() for name in ("models", "theory"))
+    for name, page, case in [
+        ("singimpact.studies.basins", models, "2_attractors/plot_basins"),
+        ("singimpact.impact_oscillator.ImpactOscillator.basins", models, "2_attractors/plot_basins"),
+        ("singimpact.impact_oscillator.ImpactOscillator.orbit", models, "1_motion/plot_orbit"),
+        ("singimpact.theory.formulas.chatter_limit", series, "4_graze/plot_series"),
+    ]:
+        entry = page.partition(f'id="{name}"')[2].partition('<dt class="sig')[0]
+        assert "Examples with this function" in entry
+        assert f"computed/gallery/{case}.html" in entry
+    entry = series.partition('id="singimpact.theory.formulas.chatter_limit"')[2].partition('<dt class="sig')[0]
+    assert "plot_chatter_limit" not in entry  # the method of a model is another function
+
+
+@pytest.mark.slow
+def test_notebooks_are_pages_with_their_pictures_to_download(site, clone):
+    for notebook in (clone / "notebooks").glob("*.ipynb"):
+        page = site / "computed" / "notebooks" / f"{notebook.stem}.html"
+        (file,) = links(page, ".ipynb")
+        assert file.read_bytes() == notebook.read_bytes()
+        assert re.search(rf'src="[^"]*{notebook.stem}_\d+_\d+\.png"', page.read_text())
+
+
+@pytest.mark.slow
+def test_an_error_in_a_script_ends_the_build(tmp_path):
+    pytest.importorskip("sphinx_gallery", reason="needs the extra docs")
+    (tmp_path / "gallery").mkdir()
+    (tmp_path / "conf.py").write_text(
+        'extensions = ["sphinx_gallery.gen_gallery"]\n'
+        'sphinx_gallery_conf = {"examples_dirs": "gallery", "gallery_dirs": "cases"}\nexclude_patterns = ["gallery"]\n'
+    )
+    (tmp_path / "index.rst").write_text("A page\n======\n\n.. toctree::\n\n   cases/index\n")
+    (tmp_path / "gallery" / "README.rst").write_text("Cases\n=====\n")
+    script = tmp_path / "gallery" / "plot_a.py"
+    command = [sys.executable, "-m", "sphinx", "-W", "-q", "-b", "html", str(tmp_path), str(tmp_path / "out")]
+    for line, ends in [("assert 1 + 1 == 3", True), ("assert 1 + 1 == 2", False)]:
+        script.write_text(f'"""\nA case\n======\n"""\n\n{line}\n')
+        assert (subprocess.run(command, capture_output=True, check=False).returncode != 0) is ends
 
 
 @pytest.mark.slow

@@ -58,7 +58,7 @@ def test_one_sentence_says_what_it_is(clone):
 
 def test_optional_parts_are_named_where_a_user_looks(readme, clone):
     extras = tomllib.loads((clone / "pyproject.toml").read_text())["project"]["optional-dependencies"]
-    table = (clone / "docs" / "how_to.md").read_text().partition("## Install optional parts")[2]
+    table = (clone / "docs" / "install.md").read_text().partition("## Install optional parts")[2]
     assert [name for name in extras if f"pip install '.[{name}]'" not in table] == []
     assert [name for name in extras if f"`{name}`" not in readme and f"[{name}]" not in readme] == []
 

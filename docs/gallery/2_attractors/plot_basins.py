@@ -10,7 +10,7 @@ import matplotlib.pyplot as plt
 import singimpact as si
 
 osc = si.linear("2.8", "0.1", "0.8", amplitude=-1)
-si.plot(si.basins(osc, size=300))
+si.plot(si.basins(osc, size=250))
 plt.show()
 
 # %%

@@ -15,7 +15,7 @@ with plt.style.context(style):
     figure, axes = plt.subplots(2, figsize=(3.39, 3.4), layout="constrained")
     osc = si.linear("2.8", "0.1", "0.8", amplitude=-1)
     si.plot(osc.orbit(0.3, 0.4, impacts=10), axes[0], color="black", linewidth=0.8)
-    si.plot(si.bifurcation(osc, "clearance", (-0.1, 0.25), points=200), axes[1], color="black", markersize=0.5)
+    si.plot(si.bifurcation(osc, "clearance", (-0.1, 0.25), points=120), axes[1], color="black", markersize=0.5)
     for panel, letter in zip(axes, "ab"):
         if panel.get_legend():
             panel.get_legend().remove()
