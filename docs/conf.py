@@ -23,6 +23,7 @@ sphinx_gallery_conf = {
     "reset_modules_order": "both",
     "within_subsection_order": "examples.in_order",
     "nested_sections": False,
+    "run_stale_examples": True,  # the package may have changed where a script has not
     "capture_repr": (),
     "first_notebook_cell": "%matplotlib inline",
     "show_signature": False,

@@ -39,13 +39,12 @@ def held_pictures(block: Any, block_vars: dict[str, Any], gallery_conf: dict[str
     return figure_rst(pictures, gallery_conf["src_dir"]) if pictures else ""
 
 
-def remove_written(gallery_conf: dict[str, Any], path: str | None, when: str) -> None:
-    """Close the figures of others before a script, and remove what it has written into its folder after it."""
+def remove_written(gallery_conf: dict[str, Any], name: str | None, when: str) -> None:
+    """Close the figures of others before a script, and remove the files that it has written beside itself after it."""
     import matplotlib.pyplot as plt
 
     plt.close("all")
-    folder = Path(path).parent if path and when == "after" else None
-    for file in folder.iterdir() if folder else ():
+    for file in Path(gallery_conf["src_dir"], gallery_conf["examples_dirs"]).glob("*/*") if when == "after" else ():
         if file.suffix in WRITTEN:
             file.unlink()
 

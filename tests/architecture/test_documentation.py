@@ -86,7 +86,8 @@ def test_a_case_of_the_gallery_is_short_and_ends_with_a_caption(clone):
 
 
 @pytest.mark.slow
-def test_a_script_leaves_no_file_beside_it(site, clone):
+@pytest.mark.usefixtures("site")
+def test_a_script_leaves_no_file_beside_it(clone):
     files = [path for path in (clone / "docs" / "gallery").rglob("*") if path.is_file() and path.suffix != ".pyc"]
     assert {path.name for path in files} - {path.name for path in scripts(clone)} == {".gitignore", "README.rst"}
 
