@@ -11,7 +11,7 @@ import matplotlib.pyplot as plt
 import singimpact as si
 
 osc = si.linear("2.8", "0.1", "0.8", amplitude=-1)
-settled = si.bifurcation(osc, "clearance", (-0.1, 0.25), points=100, direction="both")
+settled = si.bifurcation(osc, "clearance", (-0.1, 0.25), points=150, direction="both")
 branches = [si.branch(osc.periodic(n, n)[0], "clearance", (-0.1, 0.25)) for n in (1, 3)]
 si.plot([settled, *branches], sheet=True)
 plt.show()
