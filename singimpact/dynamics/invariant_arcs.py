@@ -178,15 +178,15 @@ def _grown(
         lambda points: held(window, points),
         lambda points: points[:, 0] >= window.x[0] - 0.2 * window.sides[0],
     )
-    first = carried.first(inner, outer)
-    whole = np.linspace(0.0, inner, 2 * len(first.s))
-    pieces, done = [first], [Piece(whole, start(whole), 0)]
+    pieces = [carried.first(inner, outer)]
+    s = np.append(0.0, pieces[0].s)
+    done = [carried.refined(Piece(s, start(s), 0))]
     for _ in range(GROWTH.generations):
+        new = [image for piece in pieces for image in carried.images(piece)]
+        pieces = [piece for piece in new if adds(piece, pieces, window)]
         if not pieces:
             break
         done += pieces
-        new = [image for piece in pieces for image in carried.images(piece)]
-        pieces = [piece for piece in new if adds(piece, pieces, window)]
     return list(_joined(done, window))
 
 

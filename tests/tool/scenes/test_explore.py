@@ -38,6 +38,18 @@ def test_gamma_ends_at_its_tangency_point(film):
     assert np.abs(np.array(foot) - (frame.tangencies[0], 0)).max() < 1e-12
 
 
+@pytest.mark.parametrize("name", [None, pytest.param("duffing_friction", marks=pytest.mark.slow)])
+def test_gamma_bends_smoothly_also_at_the_swan(name):
+    """A chord of gamma deviates from the curve by less than a quarter of a pixel of a panel of 600."""
+    film = clearance_film(NEGATIVE if name is None else si.models[name](), steps=5)
+    drawn = [(frame, curve) for frame in film.frames for curve in frame.curves["gamma"]]
+    assert film.swan.clearance in [frame.clearance for frame, _ in drawn]
+    for frame, curve in drawn:
+        steps = np.diff(curve.points, axis=0) / [np.ptp(frame.view.tau), np.ptp(frame.view.v)] * 600
+        turns = np.abs(np.diff(np.unwrap(np.arctan2(*steps.T[::-1]))))
+        assert (np.hypot(*steps.T)[1:] * turns / 8).max() < 0.25, frame.clearance
+
+
 @pytest.mark.slow
 def test_the_outline_opens_like_that_of_the_universal_model():
     """Its cusps stand at +-3 half distances, in a window of +-4."""
