@@ -8,6 +8,7 @@ import numpy as np
 from singimpact.branches.border import BorderOrbit
 from singimpact.branches.cascade import Cascade, CascadeWindow
 from singimpact.inputs import InputError
+from singimpact.scenes.label_places import legend_below, legend_entries
 from singimpact.scenes.style import BLACK, BLUE, GREY, LETTERS, ORANGE, VERMILLION
 
 
@@ -74,15 +75,7 @@ def draw_border(border: BorderOrbit, axes: Any, below: Any = None) -> Any:
         axes.tick_params(labelbottom=False)
     last = axes if below is None else below
     last.set_xlabel(f"distance from the border orbit in {name}")
-    under = -0.18 if below is None else -0.3
-    last.legend(
-        *axes.get_legend_handles_labels(),
-        loc="upper center",
-        bbox_to_anchor=(0.5, under),
-        frameon=False,
-        ncols=2,
-        fontsize="small",
-    )
+    legend_below(last, legend_entries(axes), 2, 0.18 if below is None else 0.3)
     return axes
 
 

@@ -11,11 +11,11 @@ import numpy as np
 from singimpact.algebra.numbers import Array
 from singimpact.branches.branch import Branch
 from singimpact.branches.event_curve import EventCurve
-from singimpact.branches.events import Event, kind_of
+from singimpact.branches.events import KINDS, Event, kind_of
 from singimpact.branches.solutions import closing_of, orbit_period
 from singimpact.dynamics.bifurcation_diagram import Bifurcation
 from singimpact.inputs import refuse
-from singimpact.scenes.label_places import place_labels
+from singimpact.scenes.label_places import legend_below, legend_entries, legend_mark, place_labels
 from singimpact.scenes.style import (
     BLACK,
     BLUE,
@@ -24,6 +24,7 @@ from singimpact.scenes.style import (
     GREY,
     LETTERS,
     LINES,
+    OPEN,
     VERMILLION,
     orbit_color,
     orbit_width,
@@ -40,7 +41,7 @@ WORDS = {"stable": "stable", "unstable": "unstable", "virtual": "virtual: goes t
 class BranchPictureSettings:
     """Settings of a picture of branches."""
 
-    # more events than this are named in the legend, not beside their points
+    # more events than this, or any whose name would hide a curve, are named in the legend, not beside their points
     named: int = 8
     # virtual parts are shown so far beyond the visible ones, of their height
     beyond: float = 0.35
@@ -49,6 +50,8 @@ class BranchPictureSettings:
 
 
 SETTINGS = BranchPictureSettings()
+MARK = 5.5
+"""The size of the markers of events, in points."""
 
 
 def draw_branches(branches: Sequence[Branch], axes: Any, height: str = "v") -> Any:
@@ -73,15 +76,11 @@ def draw_branches(branches: Sequence[Branch], axes: Any, height: str = "v") -> A
         line.lines(axes)
     if fresh:
         _limits(axes, drawn, shown)
-        axes.set_xlabel(LETTERS.get(names[0], names[0]))
-        axes.set_ylabel(HEIGHTS[shown])
+        axes.set(xlabel=LETTERS.get(names[0], names[0]), ylabel=HEIGHTS[shown])
         if shown != "phase":
             axes.axhline(0, color=BLACK, linewidth=0.6, zorder=1)
     marks = [mark for line in drawn for mark in line.marks()]
-    named = sum(name is not None for _, name in marks) <= SETTINGS.named
-    _draw_marks(axes, marks, named)
-    _legend(axes, drawn, [name for name in LINES if name in kinds], [] if named else marks)
-    return axes
+    return _legend(axes, drawn, [name for name in LINES if name in kinds], _draw_marks(axes, marks))
 
 
 class _Drawn:
@@ -205,22 +204,26 @@ def _limits(axes: Any, drawn: list[_Drawn], shown: str) -> None:
     axes.set_ylim(low - SETTINGS.space * size, high + SETTINGS.space * size)
 
 
-def _draw_marks(axes: Any, marks: list[Any], named: bool) -> None:
+def _draw_marks(axes: Any, marks: list[Any]) -> set[str]:
+    """Markers with their names, if all of these have clear places and are few; otherwise the names for the legend."""
     for (number, height, kind), _ in marks:
-        axes.plot(number, height, kind_of(kind).marker, color=BLACK, markerfacecolor="white", markersize=5.5, zorder=6)
-    if named:
-        place_labels(axes, [(number, height, name) for (number, height, _), name in marks if name])
+        axes.plot(number, height, kind_of(kind).marker, **OPEN, markersize=MARK, zorder=6)
+    names = [(number, height, name) for (number, height, _), name in marks if name]
+    if len(names) > SETTINGS.named:
+        return {name for _, _, name in names}
+    written, clear = place_labels(axes, names)
+    if clear:
+        return set()
+    for text in written:
+        text.remove()
+    return {text.get_text() for text in written}
 
 
-def _legend(axes: Any, drawn: list[_Drawn], kinds: list[str], marks: list[Any]) -> None:
+def _legend(axes: Any, drawn: list[_Drawn], kinds: list[str], names: set[str]) -> Any:
     """Colours of orbits, then line styles, then markers that are not named in the picture."""
     from matplotlib.lines import Line2D
 
-    handles, labels = axes.get_legend_handles_labels()
-    old = axes.get_legend()
-    if old is not None:
-        handles, labels = list(old.legend_handles), [text.get_text() for text in old.get_texts()]
-    entries = dict(zip(labels, handles, strict=True))
+    entries = legend_entries(axes)
     for line in drawn:
         n, k = line.branch.n, line.branch.k
         name = f"({n}, {k}) orbits" if n else "without impact"
@@ -228,28 +231,8 @@ def _legend(axes: Any, drawn: list[_Drawn], kinds: list[str], marks: list[Any]) 
     for kind in kinds:
         style, width = LINES[kind]
         entries.setdefault(WORDS[kind], Line2D([], [], color=BLACK, linestyle=style, linewidth=width))
-    for (_, _, kind), _ in marks:
-        entries.setdefault(kind_of(kind).label, _marker(kind_of(kind).marker))
-    _legend_below(axes, entries)
-
-
-def _marker(shape: str) -> Any:
-    from matplotlib.lines import Line2D
-
-    return Line2D([], [], linestyle="none", marker=shape, color=BLACK, markerfacecolor="white", markersize=5.5)
-
-
-def _legend_below(axes: Any, entries: dict[str, Any]) -> None:
-    """Below the axes, where no curve is."""
-    axes.legend(
-        entries.values(),
-        entries.keys(),
-        loc="upper center",
-        bbox_to_anchor=(0.5, -0.14),
-        frameon=False,
-        ncols=min(4, len(entries)),
-        fontsize="small",
-    )
+    entries |= {kind.label: legend_mark(kind.marker, MARK) for kind in KINDS if kind.label in names}
+    return legend_below(axes, entries, min(4, len(entries)))
 
 
 def draw_event_curves(curves: Sequence[EventCurve], axes: Any) -> Any:
@@ -276,15 +259,14 @@ def draw_event_curves(curves: Sequence[EventCurve], axes: Any) -> Any:
     if not all(curve.visible.all() for curve in curves):
         entries[WORDS["virtual"]] = Line2D([], [], color=BLACK, linestyle=DOTS, linewidth=1.3)
     if fresh:
-        axes.set_xlabel(LETTERS.get(curves[0].over[0], curves[0].over[0]))
-        axes.set_ylabel(LETTERS.get(curves[0].over[1], curves[0].over[1]))
+        across, up = curves[0].over
+        axes.set(xlabel=LETTERS.get(across, across), ylabel=LETTERS.get(up, up))
         axes.margins(SETTINGS.space)
     marked = _apart([(*point.parameters, point.kind) for curve in curves for point in curve.special], axes)
     for x, y, _ in marked:
-        axes.plot(x, y, "D", color=BLACK, markerfacecolor="white", markersize=5, zorder=6)
+        axes.plot(x, y, "D", **OPEN, markersize=5, zorder=6)
     place_labels(axes, marked)
-    _legend_below(axes, entries)
-    return axes
+    return legend_below(axes, entries, min(4, len(entries)))
 
 
 def _apart(points: list[tuple[float, float, str]], axes: Any) -> list[tuple[float, float, str]]:
@@ -304,6 +286,8 @@ SIZE = (8.0, 6.4)
 """Inches."""
 SPREAD = 60_000.0
 """Impacts per square inch of area of their dots: few get large dots, many small ones."""
+DOT = 4.0
+"""The least size of markers in the legend, in points."""
 
 
 def bifurcation_sheet(diagram: Bifurcation, branches: Sequence[Branch] = (), figure: Figure | None = None) -> Figure:
@@ -322,19 +306,24 @@ def bifurcation_sheet(diagram: Bifurcation, branches: Sequence[Branch] = (), fig
     ['velocity $v$ after an impact', 'phase of an impact, in periods']
     """
     from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
 
     figure = figure or Figure(figsize=SIZE, dpi=150, layout="constrained")
     above, below = figure.subplots(2, 1, sharex=True)
+    entries = dict[str, Any]()
     for axes, height in ((below, "phase"), (above, "v")):
         draw_bifurcation(diagram, axes, height)
-        handles, labels = axes.get_legend_handles_labels()
         if branches:
-            shown = draw_branches(branches, axes, height).get_legend()
-            handles, labels = shown.legend_handles, [text.get_text() for text in shown.get_texts()]
+            draw_branches(branches, axes, height)
+        entries |= legend_entries(axes)
         if axes.get_legend() is not None:
             axes.get_legend().remove()
     above.set_xlabel("")
-    figure.legend(handles, labels, loc="outside lower center", ncols=4, frameon=False, fontsize="small", markerscale=2)
+    handles, words = entries.values(), list(entries)
+    legend = figure.legend(handles, words, loc="outside lower center", ncols=4, frameon=False, fontsize="small")
+    for handle in legend.legend_handles:
+        if isinstance(handle, Line2D):
+            handle.set_markersize(max(handle.get_markersize(), DOT))
     return figure
 
 
@@ -364,13 +353,10 @@ def draw_bifurcation(diagram: Bifurcation, axes: Any, height: str = "v") -> Any:
             clip_on=False,
             **(dots | {"markersize": 1.5 * size}),
         )
-    axes.set_xlabel(LETTERS.get(diagram.over, diagram.over))
-    axes.set_ylabel(HEIGHTS[height])
-    axes.set_xlim(diagram.values.min(), diagram.values.max())
-    if height == "v":
-        axes.set_ylim(bottom=0)
-    else:
-        axes.set_ylim(0, 1)
+    axes.set(xlabel=LETTERS.get(diagram.over, diagram.over), ylabel=HEIGHTS[height])
+    top = axes.get_ylim()[1]
+    # velocities 0 stand above the edge, so that markers of grazes are whole
+    axes.set(xlim=(diagram.values.min(), diagram.values.max()), ylim=(-0.03 * top, top) if height == "v" else (0, 1))
     if not np.isfinite(v).any():
         axes.text(0.5, 0.5, "no orbit of this window has an impact", transform=axes.transAxes, ha="center", color=GREY)
     if len(axes.get_legend_handles_labels()[1]) > 1:

@@ -1,14 +1,14 @@
-"""Places for the names of points, clear of curves and of one another."""
+"""Places for the names of points, clear of curves and of one another, and legends below the axes."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from singimpact.algebra.numbers import Array
-from singimpact.scenes.style import BLACK, GREY
+from singimpact.scenes.style import BLACK, GREY, OPEN
 
 
 @dataclass(frozen=True)
@@ -32,10 +32,19 @@ class LabelSettings:
 
 
 SETTINGS = LabelSettings()
+LEADER = {"arrowstyle": "-", "color": GREY, "linewidth": 0.7, "shrinkA": 1, "shrinkB": 4}
+"""The line from a name to its point."""
 
 
-def place_labels(axes: Any, labels: Sequence[tuple[float, float, str]], size: float = 10.0) -> list[Any]:
-    """Write names beside points and return the annotations.
+class Names(NamedTuple):
+    """written : the annotations. clear : whether none of them hides a curve, a point or another name."""
+
+    written: list[Any]
+    clear: bool
+
+
+def place_labels(axes: Any, labels: Sequence[tuple[float, float, str]], size: float = 10.0) -> Names:
+    """Names written beside points.
 
     Parameters
     ----------
@@ -47,7 +56,7 @@ def place_labels(axes: Any, labels: Sequence[tuple[float, float, str]], size: fl
     >>> from matplotlib.figure import Figure
     >>> axes = Figure().add_subplot()
     >>> _ = axes.plot([0, 1], [0, 1])
-    >>> [label.get_text() for label in place_labels(axes, [(0.5, 0.5, "middle"), (2, 2, "outside")])]
+    >>> [name.get_text() for name in place_labels(axes, [(0.5, 0.5, "middle"), (2, 2, "outside")]).written]
     ['middle']
     """
     axes.figure.draw_without_rendering()  # sets the layout, which the distances in pixels need
@@ -63,7 +72,7 @@ def place_labels(axes: Any, labels: Sequence[tuple[float, float, str]], size: fl
     points = np.array([axes.transData.transform((x, y)) for x, y, _ in inside]).reshape(-1, 2)
     obstacles.append(np.repeat(points, 4, axis=0))  # to hide another point is worse than to cross a curve
     taken: list[Array] = [_extent(text) for text in axes.texts]
-    written = []
+    written, clear = [], True
     for (x, y, name), point in zip(inside, points, strict=True):
         text = axes.annotate(
             name,
@@ -75,33 +84,53 @@ def place_labels(axes: Any, labels: Sequence[tuple[float, float, str]], size: fl
             zorder=8,
             ha="center",
             va="center",
+            arrowprops=LEADER,
         )
         extent = _extent(text)
         half = (extent[2:] - extent[:2]) / 2
-        offset = _offset(point, half, np.concatenate(obstacles), taken, (box.extents, pixel))
-        text.remove()
+        offset, free = _offset(point, half, np.concatenate(obstacles), taken, (box.extents, pixel))
+        clear &= free
+        text.set_position(tuple(offset / pixel))
+        written.append(text)
         length = np.hypot(*offset) - _reach(half, offset)
-        line = {"arrowstyle": "-", "color": GREY, "linewidth": 0.7, "shrinkA": 1, "shrinkB": 4}
-        written.append(
-            axes.annotate(
-                name,
-                (x, y),
-                tuple(offset / pixel),
-                textcoords="offset points",
-                fontsize=size,
-                color=BLACK,
-                zorder=8,
-                ha="center",
-                va="center",
-                arrowprops=line if length > SETTINGS.joined * pixel else None,
-            )
-        )
+        joined = bool(length > SETTINGS.joined * pixel)
+        text.arrow_patch.set_visible(joined)
         middle = point + offset
-        if length > SETTINGS.joined * pixel:
+        if joined:
             shares = np.linspace(0, 1, 2 + int(length / (SETTINGS.sample * pixel)))[:, None]
             obstacles.append(point + shares * offset * (length / np.hypot(*offset)))
         taken.append(np.concatenate([middle - half, middle + half]))
-    return written
+    return Names(written, clear)
+
+
+def legend_entries(axes: Any) -> dict[str, Any]:
+    """The words and handles of the legend that is there, or of the curves."""
+    old = axes.get_legend()
+    if old is None:
+        handles, labels = axes.get_legend_handles_labels()
+        return dict(zip(labels, handles, strict=True))
+    return dict(zip([text.get_text() for text in old.get_texts()], list(old.legend_handles), strict=True))
+
+
+def legend_mark(shape: str, size: float, **look: Any) -> Any:
+    """A marker for a legend, open unless its colours are given."""
+    from matplotlib.lines import Line2D
+
+    return Line2D([], [], linestyle="none", marker=shape, markersize=size, **(OPEN | look))
+
+
+def legend_below(axes: Any, entries: dict[str, Any], columns: int = 3, under: float = 0.13) -> Any:
+    """The axes with a legend below them, where no curve is; `under` is its distance in heights of the axes."""
+    axes.legend(
+        entries.values(),
+        entries.keys(),
+        loc="upper center",
+        bbox_to_anchor=(0.5, -under),
+        ncols=columns,
+        frameon=False,
+        fontsize="small",
+    )
+    return axes
 
 
 def _within(place: Array, box: Any) -> bool:
@@ -123,8 +152,10 @@ def _reach(half: Array, offset: Array) -> float:
         return float(np.min(half / direction))
 
 
-def _offset(point: Array, half: Array, obstacles: Array, taken: list[Array], space: tuple[Any, float]) -> Array:
-    """The offset, in pixels, of the name's middle that hides least; of those the nearest."""
+def _offset(
+    point: Array, half: Array, obstacles: Array, taken: list[Array], space: tuple[Any, float]
+) -> tuple[Array, bool]:
+    """The offset, in pixels, of the name's middle that hides least, of those the nearest; whether it hides nothing."""
     edges, pixel = space
     margin = SETTINGS.margin * pixel
     best, least = np.array([0.0, SETTINGS.distances[0]]), np.inf
@@ -145,8 +176,8 @@ def _offset(point: Array, half: Array, obstacles: Array, taken: list[Array], spa
             if cost < least:
                 best, least = offset, cost
         if least < len(SETTINGS.distances) * 0.2:
-            break
-    return best
+            return best, True
+    return best, False
 
 
 def _between(point: Array, direction: Array, ends: tuple[float, float], obstacles: Array, clear: float) -> int:

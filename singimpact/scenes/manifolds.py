@@ -14,7 +14,8 @@ from singimpact.branches.horseshoe import CrossedSet, Horseshoe
 from singimpact.branches.manifold import Manifold
 from singimpact.dynamics.invariant_arcs import model_step
 from singimpact.inputs import refuse
-from singimpact.scenes.style import BLACK, BLUE, DASHES, GREEN, ORANGE, PENS
+from singimpact.scenes.label_places import legend_below, legend_entries, legend_mark
+from singimpact.scenes.style import BLACK, BLUE, DASHES, GREEN, OPEN, ORANGE, PENS, WHITE
 
 
 @dataclass(frozen=True)
@@ -45,7 +46,7 @@ def draw_manifolds(manifolds: Sequence[Manifold], axes: Any) -> Any:
     """
     if len({manifold.saddle.oscillator for manifold in manifolds}) > 1:
         raise refuse("manifolds to plot", "those of several models", "manifolds of one model")
-    fresh, entries = not axes.has_data(), _entries(axes)
+    fresh, entries = not axes.has_data(), legend_entries(axes)
     periods, highest = manifolds[0].window.x, max(manifold.window.y[1] for manifold in manifolds)
     limits = (axes.get_xlim(), axes.get_ylim())
     for manifold in manifolds:
@@ -58,52 +59,30 @@ def draw_manifolds(manifolds: Sequence[Manifold], axes: Any) -> Any:
                 axes.plot(piece.points[:, 0] + turn, piece.points[:, 1], **line, zorder=4)
             _saddle(manifold, turn, axes)
             _cuts(manifold, turn, axes, entries)
-    entries["saddle"] = _mark("s", SETTINGS.saddle, BLACK)
+    entries["saddle"] = legend_mark("s", SETTINGS.saddle)
     if fresh:
-        axes.set_xlim(*periods)
-        axes.set_ylim(0.0, highest)
-        axes.set_xlabel(r"launch phase $\tau$")
-        axes.set_ylabel("launch velocity $v$")
-    else:
-        axes.set_xlim(*limits[0])
-        axes.set_ylim(*limits[1])
-    return _with_legend(axes, entries)
-
-
-def _with_legend(axes: Any, entries: dict[str, Any], columns: int = 3) -> Any:
-    """The axes with their legend below."""
-    axes.legend(
-        entries.values(),
-        entries.keys(),
-        loc="upper center",
-        bbox_to_anchor=(0.5, -0.13),
-        ncols=columns,
-        frameon=False,
-        fontsize="small",
-    )
-    return axes
+        limits = periods, (0.0, highest)
+        axes.set(xlabel=r"launch phase $\tau$", ylabel="launch velocity $v$")
+    axes.set(xlim=limits[0], ylim=limits[1])
+    return legend_below(axes, entries)
 
 
 def draw_crossings(crossings: Crossings, axes: Any) -> Any:
     """Draw both manifolds, a point of each orbit in which they cross, and all impacts of the first one."""
     draw_manifolds(crossings.manifolds, axes)
-    entries, limits = _entries(axes), (axes.get_xlim(), axes.get_ylim())
-    pen = PENS["crossing"]
+    entries, limits = legend_entries(axes), (axes.get_xlim(), axes.get_ylim())
+    color, hollow = PENS["crossing"].color, {"color": BLACK, "markerfacecolor": "none"}
+    filled = {"color": color, "markerfacecolor": color}
     kind = crossings[0].kind if crossings else "homoclinic"
     for crossing in crossings:
-        axes.plot(
-            crossing.tau, crossing.v, "o", color=pen.color, markersize=SETTINGS.crossing, markeredgewidth=0, zorder=6
-        )
+        axes.plot(crossing.tau, crossing.v, "o", **filled, markersize=SETTINGS.crossing, markeredgewidth=0, zorder=6)
     for crossing in crossings[: SETTINGS.orbits]:
-        axes.plot(
-            *crossing.states.T, "o", color=BLACK, markerfacecolor="none", markersize=1.8 * SETTINGS.crossing, zorder=7
-        )
-        entries[f"impacts of the first {kind} orbit"] = _mark("o", 1.8 * SETTINGS.crossing, "none")
+        axes.plot(*crossing.states.T, "o", **hollow, markersize=1.8 * SETTINGS.crossing, zorder=7)
+        entries[f"impacts of the first {kind} orbit"] = legend_mark("o", 1.8 * SETTINGS.crossing, **hollow)
     if crossings:
-        entries[f"{kind} points, one of each orbit"] = _mark("o", SETTINGS.crossing, pen.color, pen.color)
-    axes.set_xlim(*limits[0])
-    axes.set_ylim(*limits[1])
-    return _with_legend(axes, entries)
+        entries[f"{kind} points, one of each orbit"] = legend_mark("o", SETTINGS.crossing, **filled)
+    axes.set(xlim=limits[0], ylim=limits[1])
+    return legend_below(axes, entries)
 
 
 def draw_certified_crossing(crossing: EnclosedCrossing, axes: Any) -> Any:
@@ -115,7 +94,7 @@ def draw_certified_crossing(crossing: EnclosedCrossing, axes: Any) -> Any:
     """
     from matplotlib.patheffects import withStroke
 
-    fresh, entries = not axes.has_data(), _entries(axes)
+    fresh, entries = not axes.has_data(), legend_entries(axes)
     limits, pen = (axes.get_xlim(), axes.get_ylim()), PENS["certified"]
     assert crossing.oscillator.period is not None
     period = as_float(crossing.oscillator.period)
@@ -141,19 +120,18 @@ def draw_certified_crossing(crossing: EnclosedCrossing, axes: Any) -> Any:
             zorder=9,
             fontweight="bold",
             color=pen.color,
-            path_effects=[withStroke(linewidth=3, foreground="white")],
+            path_effects=[withStroke(linewidth=3, foreground=WHITE)],
         )
-    axes.plot(*saddles.T, "s", color=BLACK, markerfacecolor="white", markersize=SETTINGS.saddle, zorder=8)
+    axes.plot(*saddles.T, "s", **OPEN, markersize=SETTINGS.saddle, zorder=8)
     at = int(away[: crossing.index + 1].sum())
     words = f"impacts of a certified {crossing.kind} orbit, angle {float(crossing.angle.value):.4f} at {at}"
-    entries[words] = _mark("o", SETTINGS.impact, pen.color, pen.color)
-    entries["saddle"] = _mark("s", SETTINGS.saddle, BLACK)
-    axes.set_xlim(*((0.0, period) if fresh else limits[0]))
-    axes.set_ylim(*((0.0, top) if fresh else limits[1]))
+    entries[words] = legend_mark("o", SETTINGS.impact, color=pen.color, markerfacecolor=pen.color)
+    entries["saddle"] = legend_mark("s", SETTINGS.saddle)
     if fresh:
-        axes.set_xlabel(r"launch phase $\tau$")
-        axes.set_ylabel("launch velocity $v$")
-    return _with_legend(axes, entries, 2)
+        limits = (0.0, period), (0.0, top)
+        axes.set(xlabel=r"launch phase $\tau$", ylabel="launch velocity $v$")
+    axes.set(xlim=limits[0], ylim=limits[1])
+    return legend_below(axes, entries, 2)
 
 
 def _orbit(found: Manifold) -> str:
@@ -172,7 +150,7 @@ def _saddle(found: Manifold, turn: float, axes: Any) -> None:
     period = found.window.x[1]
     tau = np.mod(np.asarray(found.saddle.tau, dtype=float), period) + turn
     v = np.asarray(found.saddle.v, dtype=float)
-    axes.plot(tau, v, "s", color=BLACK, markerfacecolor="white", markersize=SETTINGS.saddle, zorder=6)
+    axes.plot(tau, v, "s", **OPEN, markersize=SETTINGS.saddle, zorder=6)
 
 
 def _cuts(found: Manifold, turn: float, axes: Any, entries: dict[str, Any]) -> None:
@@ -180,31 +158,14 @@ def _cuts(found: Manifold, turn: float, axes: Any, entries: dict[str, Any]) -> N
     if not found.cuts or len(found.cuts) > SETTINGS.marked:
         return
     places = np.array([(cut.tau + turn, cut.v) for cut in found.cuts])
-    axes.plot(*places.T, "D", color=BLACK, markerfacecolor="white", markersize=SETTINGS.cut, zorder=5)
-    entries["cut by a graze"] = _mark("D", SETTINGS.cut, BLACK)
-
-
-def _entries(axes: Any) -> dict[str, Any]:
-    """The legend that is there."""
-    old = axes.get_legend()
-    if old is None:
-        handles, labels = axes.get_legend_handles_labels()
-        return dict(zip(labels, handles, strict=True))
-    return dict(zip([text.get_text() for text in old.get_texts()], list(old.legend_handles), strict=True))
+    axes.plot(*places.T, "D", **OPEN, markersize=SETTINGS.cut, zorder=5)
+    entries["cut by a graze"] = legend_mark("D", SETTINGS.cut)
 
 
 def _line(look: dict[str, Any]) -> Any:
     from matplotlib.lines import Line2D
 
     return Line2D([], [], **look)
-
-
-def _mark(shape: str, size: float, color: str, face: str = "white") -> Any:
-    from matplotlib.lines import Line2D
-
-    edge = BLACK if color == "none" else color
-    face = "none" if color == "none" else face
-    return Line2D([], [], linestyle="none", marker=shape, color=edge, markerfacecolor=face, markersize=size)
 
 
 # A certified horseshoe: the set round the saddle, and the images that cross it.
@@ -235,15 +196,12 @@ def draw_horseshoe(horseshoe: Horseshoe, axes: Any) -> Any:
     for points, color, style, words in looks:
         axes.fill(*points.T, color=color, alpha=0.12, linewidth=0)
         axes.plot(*points.T, color=color, linestyle=style, linewidth=1.4, label=words)
-    axes.plot(0, 0, "s", color=BLACK, markerfacecolor="white", markersize=6, label="saddle")
+    axes.plot(0, 0, "s", **OPEN, markersize=SETTINGS.saddle, label="saddle")
     reach = 1.1 * float(np.abs(looks[0][0][:, 0]).max())
-    axes.set_xlim(-reach, reach)
-    axes.set_ylim(-1.3, 1.3)
+    axes.set(xlim=(-reach, reach), ylim=(-1.3, 1.3), ylabel="along $W^s$")
     digits, power = f"{float(home.radii[0]):.1e}".split("e")
     axes.set_xlabel(f"along $W^u$, in half widths of $N$, ${digits}\\cdot10^{{{int(power)}}}$")
-    axes.set_ylabel("along $W^s$")
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=3, frameon=False, fontsize="small")
-    return axes
+    return legend_below(axes, legend_entries(axes))
 
 
 def _outline(one: CrossedSet) -> Array:

@@ -6,7 +6,9 @@ from typing import Any
 from singimpact.branches.events import KINDS
 
 BLUE, VERMILLION, GREEN, PURPLE, SKY, ORANGE = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00"
-BLACK, GREY, SHADE = "#000000", "#6E6E6E", "#E3E3E3"
+BLACK, GREY, SHADE, WHITE = "#000000", "#6E6E6E", "#E3E3E3", "#FFFFFF"
+OPEN = {"color": BLACK, "markerfacecolor": WHITE}
+"""The look of an open marker."""
 DASHES, DOTS, DASH_DOT, SHORT_DASHES = (0, (5, 2)), (0, (1, 1.4)), (0, (6, 2, 1, 2)), (0, (2.6, 1.2))
 
 

@@ -194,7 +194,7 @@ def _letters(axes: Any, panel: Panel, look: Look) -> None:
     named = [(*dot.place, dot.letter) for dot in panel.dots if dot.letter]
     lettered = {line.label: line for line in panel.lines if line.label}
     named += [(*_place(line.points, line.at), label) for label, line in lettered.items()]
-    for text in place_labels(axes, named, size=PRINT.type):
+    for text in place_labels(axes, named, size=PRINT.type).written:
         line = lettered.get(text.get_text())
         text.set(color=look.pen(line.pen)["color"] if line else look.color(BLACK), path_effects=look.halo(), zorder=9)
 

@@ -81,6 +81,20 @@ def test_names_are_clear_of_curves_and_of_one_another(branch, curves) -> None:
 
 
 @pytest.mark.slow
+def test_names_that_would_hide_a_curve_go_to_the_legend(closed) -> None:
+    """As in the picture of README, where events pile up among the dots of an attractor."""
+    settled = si.bifurcation(closed.oscillator, "clearance", (-0.1, 0.25), points=80, direction="both")
+    sheet = si.plot([settled, closed], sheet=True)
+    assert [overlapped(axes) for axes in sheet] == [[], []]
+    (legend,) = sheet[0].figure.legends
+    words = [text.get_text() for text in legend.get_texts()]
+    assert {"doubling", "fold", "graze", "(3, 3) orbits"} <= {*words, *(text.get_text() for text in sheet[0].texts)}
+    assert len(words) == len(set(words))
+    low, _ = sheet[0].get_ylim()
+    assert low < 0  # a marker of a graze at v = 0 is whole
+
+
+@pytest.mark.slow
 def test_impacts_of_a_closed_branch_keep_together(closed) -> None:
     axes = si.plot(closed)
     # a graze has one marker, a fold one an impact
