@@ -174,6 +174,7 @@ def gamma_proved(place: Path) -> None:
     from matplotlib.figure import Figure
 
     import singimpact as si
+    from singimpact.scenes.style import BLACK, BLUE, ORANGE
 
     osc = si.linear(2, "0.3", "0.5")
     proved = osc.certified_gamma(reach="1/4")
@@ -181,9 +182,9 @@ def gamma_proved(place: Path) -> None:
     S = np.linspace(0.01, 0.25, 60)
     on = np.array([float(proved.threshold(end - np.arctan(each)).value) for each in S * (1 - 1e-12)])
     axes = Figure(figsize=(7.2, 4.6), layout="constrained").add_subplot()
-    axes.plot(S, on / S**2, color="black", label="gamma, with its proved bound (narrower than the line)")
-    for factor, colour, label in ((1 - 2e-3, "tab:blue", r"below: chatter completes before $\tau_*$"),
-                                  (1 + 2e-3, "tab:orange", "above: contact is lost")):  # fmt: skip
+    axes.plot(S, on / S**2, color=BLACK, label="gamma, with its proved bound (narrower than the line)")
+    for factor, colour, label in ((1 - 2e-3, BLUE, r"below: chatter completes before $\tau_*$"),
+                                  (1 + 2e-3, ORANGE, "above: contact is lost")):  # fmt: skip
         orbit = osc.orbit(end - np.arctan(0.25), float(factor * on[-1]), 24)
         ahead = np.tan(end - orbit.tau)
         over = np.flatnonzero((orbit.v <= 0) | (orbit.tau >= end))  # at rest, or after tau_*

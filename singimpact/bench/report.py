@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.bench.measuring import Measured, Row
-from singimpact.scenes.style import BLACK, BLUE, DASH_DOT, DASHES, DOTS, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION
+from singimpact.scenes.style import BLACK, DASH_DOT, DASHES, DOTS, GREY, OPEN, ORBIT_COLORS, SHADE, SKY, WHITE
 
 HEADER = ("case", "method", "setting", "time", "to reach", "error", "wrong", "missed", "times the first", "quartiles")
 GROWTH = ("case", "method", "time grows with the power", "+-", "the work with", "from", "to")
@@ -169,7 +169,7 @@ def as_data(found: Measured) -> dict[str, Any]:
 # Run time against error, a panel a case and a line a method; where there is no error, against size, or bars. Method by
 # colour and by marker, so that a grey copy tells them too; a hollow marker has missed an answer.
 
-COLORS = (BLUE, VERMILLION, GREEN, PURPLE, BLACK, ORANGE, SKY, GREY)
+COLORS = (*ORBIT_COLORS, BLACK, GREY)
 MARKERS = "osD^vP*X"
 STYLES = ("solid", DASHES, DASH_DOT, DOTS)
 
@@ -250,14 +250,14 @@ def _panel(axes: Any, case: str, rows: Sequence[Row], names: Sequence[str]) -> N
         axes.loglog(across, [row.microseconds for row in line], **look)
         hollow = [(x, row.microseconds) for x, row in zip(across, line, strict=True) if row.missed]
         if hollow:
-            axes.loglog(*zip(*hollow, strict=True), **{**look, "linestyle": "none", "markerfacecolor": "white"})
+            axes.loglog(*zip(*hollow, strict=True), **{**look, "linestyle": "none", "markerfacecolor": WHITE})
     if kind == "error":
         _widened(axes)
     axes.set_title(case, fontsize=10)
     axes.set_xlabel("relative error" if kind == "error" else "size", fontsize=9)
     axes.set_ylabel("microseconds of CPU", fontsize=9)
     axes.tick_params(which="both", labelsize=7)
-    axes.grid(True, which="major", color="0.9", linewidth=0.6)
+    axes.grid(True, which="major", color=SHADE, linewidth=0.6)
     axes.spines[["top", "right"]].set_visible(False)
 
 
@@ -295,9 +295,5 @@ def _legend(figure: Any, names: Sequence[str]) -> None:
     from matplotlib.lines import Line2D
 
     keys = [Line2D([], [], label=name, **_look(names, name)) for name in names]
-    keys.append(
-        Line2D(
-            [], [], label="hollow: missed an answer", color=BLACK, marker="o", linestyle="none", markerfacecolor="white"
-        )
-    )
+    keys.append(Line2D([], [], label="hollow: missed an answer", marker="o", linestyle="none", **OPEN))
     figure.legend(handles=keys, loc="outside lower center", ncols=2, fontsize=8, frameon=False)

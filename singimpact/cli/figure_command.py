@@ -61,11 +61,11 @@ def command(which: str, output: str, kind: str, serif: bool, dark: bool, data: b
 
 
 def _made(number: int | str, serif: bool, dark: bool) -> tuple[Any, Any]:
-    from singimpact.paper.figures.figure_rendering import Look, drawn
+    from singimpact.paper.figures.figure_rendering import drawn
     from singimpact.paper.figures.registry import kept_picture
 
     picture = kept_picture(number)
-    return drawn(picture, Look(serif, dark)), [picture.title, list(picture.claims)]
+    return drawn(picture, serif, dark), [picture.title, list(picture.claims)]
 
 
 def _data(number: int | str) -> Any:

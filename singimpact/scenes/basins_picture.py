@@ -10,19 +10,7 @@ from singimpact.dynamics.basins_of_attraction import Basins
 from singimpact.inputs import refuse
 from singimpact.oscillator.moving_number import value_of, with_number
 from singimpact.scenes.scene import LAYERS, Scene
-from singimpact.scenes.style import BLACK, BLUE, GREEN, ORANGE, PENS, PURPLE, SKY, VERMILLION
-
-FIXED = {
-    "not decided": "#F2F2F2",
-    "sensitive": "#E6E6E6",
-    "unresolved": "#FAFAFA",
-    "never returns": "#FFFFFF",
-    "no impact": "#FFFFFF",
-    "chaotic": "#C9C9C9",
-    "rest": BLACK,
-}
-CHATTERED = (BLACK, "#3D3D3D", "#6B6B6B")  # chatter for ever, of one lift-off or another
-ORBITS = (ORANGE, BLUE, SKY, VERMILLION, GREEN, PURPLE, "#F0E442", "#8C8C8C")  # neighbours differ in lightness
+from singimpact.scenes.style import CHATTERED, CLASS_ORBITS, CLASSES, GREY, OPEN, PENS, VERMILLION
 
 
 def draw_basins(found: Basins, axes: Any = None, colors: Sequence[str] | None = None) -> Any:
@@ -52,8 +40,8 @@ def class_colors(several: Sequence[Basins]) -> list[list[str]]:
             names.append(name)
             key = (*name, names.count(name))  # the second of two equal (n, k)
             if key not in shades:
-                palette = ORBITS if kind == "orbit" else CHATTERED
-                shades[key] = FIXED.get(kind) or palette[used[kind] % len(palette)]
+                palette = CLASS_ORBITS if kind == "orbit" else CHATTERED
+                shades[key] = CLASSES.get(kind) or palette[used[kind] % len(palette)]
                 if kind in used:
                     used[kind] += 1
             colors.append(shades[key])
@@ -66,7 +54,7 @@ def draw_first_chatter(found: Basins, axes: Any = None) -> Any:
     chosen = found.first_chatter_completes
     named = [(chosen, "first chatter completes"), (~chosen, "it does not")]
     layers = [(where, f"{name}, {100 * where.mean():.3g} %") for where, name in named]
-    return _painted(found, layers, [VERMILLION, "#F2F2F2"], axes)
+    return _painted(found, layers, [VERMILLION, CLASSES["not decided"]], axes)
 
 
 def _painted(basins: Basins, layers: list[tuple[Any, str]], colors: list[str], axes: Any) -> Any:
@@ -77,12 +65,11 @@ def _painted(basins: Basins, layers: list[tuple[Any, str]], colors: list[str], a
     image, patches = np.empty((*basins.codes.shape, 3)), []
     for (where, label), color in zip(layers, colors, strict=True):
         image[where] = to_rgb(color)
-        patches.append(Patch(facecolor=color, edgecolor="0.4", label=label))
+        patches.append(Patch(facecolor=color, edgecolor=GREY, label=label))
     half_tau, half_v = np.diff(basins.tau[:2])[0] / 2, np.diff(basins.v[:2])[0] / 2
     box = (basins.tau[0] - half_tau, basins.tau[-1] + half_tau, basins.v[0] - half_v, basins.v[-1] + half_v)
     axes.imshow(image, origin="lower", extent=box, aspect="auto", interpolation="nearest")
-    axes.set_xlabel(r"launch phase $\tau$")
-    axes.set_ylabel("launch velocity $v$")
+    axes.set(xlabel=r"launch phase $\tau$", ylabel="launch velocity $v$")
     axes.legend(
         handles=patches[:12], loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=3, frameon=False, fontsize="small"
     )
@@ -97,11 +84,9 @@ def _new_axes(width: float, height: float) -> Any:
 
 # The plane of states before and after a transition of P: basins, the outline P, the tears of the map and gamma.
 
-CURVES = {"outline": "hidden", "discontinuities": "jump", "gamma": "gamma"}
-"""Layers over basins, and the pens that draw them."""
+CURVES = {"outline": "hidden", "discontinuities": "jump", "gamma": "gamma"}  # layers over basins, and their pens
 WIDTHS = {"outline": 0.9, "discontinuities": 2.0, "gamma": 1.3}
-FAINT = 0.45
-"""Opacity of basins below curves."""
+FAINT = 0.45  # opacity of basins below curves
 
 
 def draw_both_sides(sides: BothSides, axes: Any) -> Any:
@@ -121,7 +106,7 @@ def draw_both_sides(sides: BothSides, axes: Any) -> Any:
     first = min(side.tau[0] for side in sides.basins)
     for one in pair:
         phase = first + np.mod(sides.transition.tau - first, np.ptp(sides.basins[0].tau))
-        one.plot(phase, 0.0, "^", color=BLACK, markerfacecolor="white", markersize=7, clip_on=False, zorder=8)
+        one.plot(phase, 0.0, "^", **OPEN, markersize=7, clip_on=False, zorder=8)
         one.set_xlabel(rf"launch phase $\tau$; {sides.transition.kind} at the triangle")
     pair[1].set_ylabel("")
     return pair
@@ -144,8 +129,7 @@ def _draw(axes: Any, model: Any, side: Basins, colors: list[str]) -> None:
         if lines:
             handles.append(lines[0])
             labels.append(layer.label)
-    axes.set_xlim(*limits[0])
-    axes.set_ylim(*limits[1])
+    axes.set(xlim=limits[0], ylim=limits[1])
     axes.legend(
         handles, labels, loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=2, frameon=False, fontsize="small"
     )

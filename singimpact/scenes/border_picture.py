@@ -65,11 +65,10 @@ def draw_border(border: BorderOrbit, axes: Any, below: Any = None) -> Any:
                 zorder=4,
             )
     name = LETTERS.get(border.over, border.over)
-    axes.set_ylabel("impacts a return")
     axes.set_title(
         f"border orbit at {name} = {float(border.parameter):.12g}, chatter completes {border.side}", fontsize="medium"
     )
-    axes.set_xscale("log")
+    axes.set(xscale="log", ylabel="impacts a return")
     if below is not None:
         _multipliers(samples, border, below, size)
         axes.tick_params(labelbottom=False)
@@ -124,6 +123,4 @@ def _multipliers(samples: tuple[CascadeWindow, ...], border: BorderOrbit, axes: 
         if rows:
             axes.plot(*np.array(rows).T, marker, color=color, markersize=size, linestyle="none", zorder=4)
     axes.axhline(1, color=BLACK, linewidth=0.6, zorder=1)
-    axes.set_yscale("log")
-    axes.set_ylim(10**-SETTINGS.decades, 2)
-    axes.set_ylabel("larger multiplier, size")
+    axes.set(yscale="log", ylim=(10**-SETTINGS.decades, 2), ylabel="larger multiplier, size")

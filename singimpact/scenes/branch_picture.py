@@ -47,11 +47,12 @@ class BranchPictureSettings:
     beyond: float = 0.35
     # free space around the curves
     space: float = 0.06
+    # of markers of events, and at least in the legend of a sheet, in points
+    mark: float = 5.5
+    dot: float = 4.0
 
 
 SETTINGS = BranchPictureSettings()
-MARK = 5.5
-"""The size of the markers of events, in points."""
 
 
 def draw_branches(branches: Sequence[Branch], axes: Any, height: str = "v") -> Any:
@@ -207,7 +208,7 @@ def _limits(axes: Any, drawn: list[_Drawn], shown: str) -> None:
 def _draw_marks(axes: Any, marks: list[Any]) -> set[str]:
     """Markers with their names, if all of these have clear places and are few; otherwise the names for the legend."""
     for (number, height, kind), _ in marks:
-        axes.plot(number, height, kind_of(kind).marker, **OPEN, markersize=MARK, zorder=6)
+        axes.plot(number, height, kind_of(kind).marker, **OPEN, markersize=SETTINGS.mark, zorder=6)
     names = [(number, height, name) for (number, height, _), name in marks if name]
     if len(names) > SETTINGS.named:
         return {name for _, _, name in names}
@@ -231,7 +232,7 @@ def _legend(axes: Any, drawn: list[_Drawn], kinds: list[str], names: set[str]) -
     for kind in kinds:
         style, width = LINES[kind]
         entries.setdefault(WORDS[kind], Line2D([], [], color=BLACK, linestyle=style, linewidth=width))
-    entries |= {kind.label: legend_mark(kind.marker, MARK) for kind in KINDS if kind.label in names}
+    entries |= {kind.label: legend_mark(kind.marker, SETTINGS.mark) for kind in KINDS if kind.label in names}
     return legend_below(axes, entries, min(4, len(entries)))
 
 
@@ -282,12 +283,8 @@ def _apart(points: list[tuple[float, float, str]], axes: Any) -> list[tuple[floa
 
 # Bifurcation diagrams: velocities and phases of settled orbits, branches of periodic orbits over them.
 
-SIZE = (8.0, 6.4)
-"""Inches."""
-SPREAD = 60_000.0
-"""Impacts per square inch of area of their dots: few get large dots, many small ones."""
-DOT = 4.0
-"""The least size of markers in the legend, in points."""
+SIZE = (8.0, 6.4)  # inches
+SPREAD = 60_000.0  # impacts per square inch of area of their dots: few get large dots, many small ones
 
 
 def bifurcation_sheet(diagram: Bifurcation, branches: Sequence[Branch] = (), figure: Figure | None = None) -> Figure:
@@ -319,11 +316,10 @@ def bifurcation_sheet(diagram: Bifurcation, branches: Sequence[Branch] = (), fig
         if axes.get_legend() is not None:
             axes.get_legend().remove()
     above.set_xlabel("")
-    handles, words = entries.values(), list(entries)
-    legend = figure.legend(handles, words, loc="outside lower center", ncols=4, frameon=False, fontsize="small")
-    for handle in legend.legend_handles:
+    look: dict[str, Any] = {"ncols": 4, "frameon": False, "fontsize": "small"}
+    for handle in figure.legend(entries.values(), list(entries), loc="outside lower center", **look).legend_handles:
         if isinstance(handle, Line2D):
-            handle.set_markersize(max(handle.get_markersize(), DOT))
+            handle.set_markersize(max(handle.get_markersize(), SETTINGS.dot))
     return figure
 
 

@@ -1,8 +1,10 @@
 """One call for everything that can be drawn."""
 
+from __future__ import annotations
+
 import warnings
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -32,16 +34,21 @@ from singimpact.scenes.branch_picture import (
 from singimpact.scenes.manifolds import draw_certified_crossing, draw_crossings, draw_horseshoe, draw_manifolds
 from singimpact.scenes.orbit_picture import SIZE as SHEET, draw_orbit, draw_periodic, draw_section, orbit_sheet
 from singimpact.scenes.scene import Scene
-from singimpact.scenes.style import PENS
+from singimpact.scenes.style import BLACK, PENS, darken
 from singimpact.surface.curve import Curve
 from singimpact.surface.impact_surface import ImpactSurface
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 WIDE, HIGH, BRANCHES = (8.0, 4.0), (7.2, 5.2), (7.2, 4.8)  # inches
 LETTERS = {"tau": r"time $\tau$", "t": "flight time $t$", "v": "velocity $v$"}
 
 
 @checked_keywords
-def plot(thing: Any, ax: Any = None, *, height: str = "v", sheet: bool = False, **style: object) -> Any:
+def plot(
+    thing: Any, ax: Any = None, *, height: str = "v", sheet: bool = False, dark: bool = False, **style: object
+) -> Any:
     """Draw a thing and return the matplotlib axes.
 
     Parameters
@@ -58,6 +65,7 @@ def plot(thing: Any, ax: Any = None, *, height: str = "v", sheet: bool = False, 
         periods. A branch of orbits without impact alone is shown by its lowest x - c, beside others at v = 0.
     sheet : whether a figure of several axes is made, which are returned: of an orbit its last part, the phase portrait
         and all velocities; of a diagram, or a list of one and of branches, velocities and phases.
+    dark : light lines on a dark ground, in the whole figure.
     style : properties of matplotlib for all lines and points that are drawn, such as color, linewidth or alpha.
 
     Examples
@@ -78,21 +86,19 @@ def plot(thing: Any, ax: Any = None, *, height: str = "v", sheet: bool = False, 
 
         drawn = [child for child in _children(axes) if child not in before]
         _styled([child for child in drawn if isinstance(child, Line2D | Collection)], style)
+    if dark:
+        darken(np.ravel(axes)[0].figure)
     return axes
 
 
 def _sheet(thing: Any) -> Array:
     """The axes of a figure of pyplot that shows an orbit or a diagram from several sides."""
-    import matplotlib.pyplot
-
     diagram, *branches = thing if isinstance(thing, list | tuple) else [thing]
     if isinstance(diagram, Orbit):
-        figure = matplotlib.pyplot.figure(figsize=SHEET, dpi=150, layout="constrained")
-        return np.array(orbit_sheet(diagram, figure=figure).axes, dtype=object)
+        return np.array(orbit_sheet(diagram, _figure(SHEET)).axes, dtype=object)
     if not isinstance(diagram, Bifurcation):
         raise refuse("thing to plot as a sheet", type(diagram).__name__, "an orbit, or a diagram and branches over it")
-    figure = matplotlib.pyplot.figure(figsize=HIGH, dpi=150, layout="constrained")
-    return np.array(bifurcation_sheet(diagram, branches, figure).axes, dtype=object)
+    return np.array(bifurcation_sheet(diagram, branches, _figure(HIGH)).axes, dtype=object)
 
 
 def _children(axes: Any) -> list[Any]:
@@ -158,34 +164,35 @@ def _curve(curve: Curve, axes: Any) -> None:
     axes.plot(*curve.points.T, **pen.line(), label=pen.words if curve.name in PENS else curve.name)
     for mark in curve.marks:
         place = curve.points[mark.index]
-        axes.plot(*place, "o", color="black", markersize=4)
+        axes.plot(*place, "o", color=BLACK, markersize=4)
         axes.annotate(mark.name, place, (5, 5), textcoords="offset points")
-    axes.set_xlabel(LETTERS.get(curve.axes[0], curve.axes[0]))
-    axes.set_ylabel(LETTERS.get(curve.axes[1], curve.axes[1]))
+    across, up = curve.axes
+    axes.set(xlabel=LETTERS.get(across, across), ylabel=LETTERS.get(up, up))
+
+
+def _figure(size: tuple[float, float]) -> Figure:
+    """A new figure of pyplot, which notebooks show."""
+    import matplotlib.pyplot
+
+    return matplotlib.pyplot.figure(figsize=size, dpi=150, layout="constrained")
 
 
 def _new_axes(size: tuple[float, float] = WIDE) -> Any:
-    import matplotlib.pyplot
-
-    return matplotlib.pyplot.figure(figsize=size, dpi=150, layout="constrained").add_subplot()
+    return _figure(size).add_subplot()
 
 
 def _two_axes() -> Any:
     """Two axes that share their horizontal one, the upper one higher."""
-    import matplotlib.pyplot
-
-    figure = matplotlib.pyplot.figure(figsize=HIGH, dpi=150, layout="constrained")
-    return figure.subplots(2, sharex=True, height_ratios=(3, 2))
+    return _figure(HIGH).subplots(2, sharex=True, height_ratios=(3, 2))
 
 
 def _beside() -> Any:
     """Two axes beside each other that share their vertical one."""
-    import matplotlib.pyplot
-
-    return matplotlib.pyplot.subplots(1, 2, figsize=(11.0, 5.2), dpi=150, layout="constrained", sharey=True)[1]
+    return _figure((11.0, 5.2)).subplots(1, 2, sharey=True)
 
 
 Drawer = Callable[[Any, Any], Any]
+# types that are drawn alone: the size of the picture, and the function that draws it
 ALONE: tuple[tuple[type, tuple[float, float], Drawer], ...] = (
     (Crossings, HIGH, draw_crossings),
     (EnclosedCrossing, HIGH, draw_certified_crossing),
@@ -195,10 +202,9 @@ ALONE: tuple[tuple[type, tuple[float, float], Drawer], ...] = (
     (Section, HIGH, draw_section),
     (Basins, HIGH, draw_basins),
 )
-"""Types that are drawn alone: the size of the picture, and the function that draws it."""
+# types that are drawn alone, or several in one picture
 TOGETHER: tuple[tuple[type, tuple[float, float], Drawer], ...] = (
     (Curve, WIDE, _curves),
     (EventCurve, BRANCHES, draw_event_curves),
     (Manifold, HIGH, draw_manifolds),
 )
-"""Types that are drawn alone, or several in one picture."""

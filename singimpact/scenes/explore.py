@@ -30,7 +30,7 @@ from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.rebound import rho_of
 from singimpact.progress import ProgressLine
 from singimpact.scenes.clearance_frames import SETTINGS, ClearanceFilm, ClearanceFrame, clearance_film
-from singimpact.scenes.style import PENS, Pen, on_dark
+from singimpact.scenes.style import BLACK, BLUE, GREY, PENS, SHADE, WALL, WHITE, Pen, on_dark
 from singimpact.store import write_text
 
 CURVES = {
@@ -42,6 +42,7 @@ CURVES = {
     "": ("orbit", "impacts of the orbit"),
 }
 """Curves of a frame, with the pen of each and its words in the legend."""
+GROUND = {"ink": BLACK, "grid": SHADE, "axis": GREY, "wall": WALL, "ground": WHITE}  # behind the curves and beside them
 PARTS_OF_A_WINDOW = 40_000  # in which the page has coordinates: below a hundredth of a pixel
 PARTS = Path(__file__).with_name("page")
 METHOD = (
@@ -124,6 +125,8 @@ def explore_page(film: ClearanceFilm) -> str:
         "sentence": escape(film.sentence.replace("c_0", "c\u2080").replace("tau =", "\u03c4 =")),
         "method": escape(METHOD),
         "style": (PARTS / "page.css").read_text(encoding="utf-8"),
+        "accent": BLUE,
+        "night": on_dark(WHITE),
         "script": _script(film),
     }
     for name, content in filled.items():
@@ -135,6 +138,7 @@ def _script(film: ClearanceFilm) -> str:
     """The model, the film, how curves look, and the code of the page."""
     parts = [model_in_javascript(film.model), as_script("FILM", _film(film))]
     parts.append(as_script("PENS", {name: _pen(PENS[name]) for name, _ in CURVES.values()}))
+    parts.append(as_script("GROUNDS", {"day": GROUND, "night": {name: on_dark(GROUND[name]) for name in GROUND}}))
     legend = [
         {"name": pen, "label": label, "dot": PENS[pen].color if pen == "orbit" else None}
         for pen, label in CURVES.values()

@@ -32,8 +32,7 @@ class LabelSettings:
 
 
 SETTINGS = LabelSettings()
-LEADER = {"arrowstyle": "-", "color": GREY, "linewidth": 0.7, "shrinkA": 1, "shrinkB": 4}
-"""The line from a name to its point."""
+LEADER = {"arrowstyle": "-", "color": GREY, "linewidth": 0.7, "shrinkA": 1, "shrinkB": 4}  # from a name to its point
 
 
 class Names(NamedTuple):
@@ -134,9 +133,7 @@ def legend_below(axes: Any, entries: dict[str, Any], columns: int = 3, under: fl
 
 
 def _within(place: Array, box: Any) -> bool:
-    x, y = place
-    slack = 3.0
-    return bool(box.x0 - slack <= x <= box.x1 + slack and box.y0 - slack <= y <= box.y1 + slack)
+    return bool(box.padded(3.0).contains(*place))
 
 
 def _extent(text: Any) -> Array:

@@ -44,6 +44,8 @@ def draw_manifolds(manifolds: Sequence[Manifold], axes: Any) -> Any:
     ----------
     manifolds : manifolds. axes : of matplotlib; limits of a picture that is there are kept.
     """
+    from matplotlib.lines import Line2D
+
     if len({manifold.saddle.oscillator for manifold in manifolds}) > 1:
         raise refuse("manifolds to plot", "those of several models", "manifolds of one model")
     fresh, entries = not axes.has_data(), legend_entries(axes)
@@ -53,7 +55,8 @@ def draw_manifolds(manifolds: Sequence[Manifold], axes: Any) -> Any:
         line = PENS[manifold.name].line()
         if not fresh:  # over basins, whose colours are strong
             line |= {"color": BLACK, "linewidth": 0.8, "linestyle": "solid" if manifold.stable else DASHES}
-        entries.setdefault(f"${manifold.name}$ of the {_orbit(manifold)} saddle", _line(line))
+        saddle = f"({manifold.saddle.n:.0f}, {manifold.saddle.k}) saddle"
+        entries.setdefault(f"${manifold.name}$ of the {saddle}", Line2D([], [], **line))
         for turn in _turns(limits[0], periods[1], fresh):
             for piece in manifold.pieces:
                 axes.plot(piece.points[:, 0] + turn, piece.points[:, 1], **line, zorder=4)
@@ -134,10 +137,6 @@ def draw_certified_crossing(crossing: EnclosedCrossing, axes: Any) -> Any:
     return legend_below(axes, entries, 2)
 
 
-def _orbit(found: Manifold) -> str:
-    return f"({found.saddle.n:.0f}, {found.saddle.k})"
-
-
 def _turns(limits: tuple[float, float], period: float, fresh: bool) -> list[float]:
     """Whole periods that bring the curves into a picture that is there."""
     if fresh:
@@ -160,12 +159,6 @@ def _cuts(found: Manifold, turn: float, axes: Any, entries: dict[str, Any]) -> N
     places = np.array([(cut.tau + turn, cut.v) for cut in found.cuts])
     axes.plot(*places.T, "D", **OPEN, markersize=SETTINGS.cut, zorder=5)
     entries["cut by a graze"] = legend_mark("D", SETTINGS.cut)
-
-
-def _line(look: dict[str, Any]) -> Any:
-    from matplotlib.lines import Line2D
-
-    return Line2D([], [], **look)
 
 
 # A certified horseshoe: the set round the saddle, and the images that cross it.

@@ -12,24 +12,25 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import Array, as_float
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.dynamics.orbit import Orbit, orbit as flown
 from singimpact.dynamics.sampling import Section
 from singimpact.flights.flight_path import path
 from singimpact.inputs import InputError, checked_keywords, refuse, whole
+from singimpact.scenes.label_places import legend_below, legend_entries
+from singimpact.scenes.style import BLACK, BLUE, GREY, HATCH, SHORT_DASHES, VERMILLION, WALL, WHITE
 from singimpact.store import written
 from singimpact.studies import interval
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from PIL import Image
 
 
 @dataclass(frozen=True)
 class OrbitStyle:
-    """The look of an orbit. Its parts differ in shape, width and lightness, so that they differ in grey too.
+    """The look of an orbit.
 
     Parameters
     ----------
@@ -38,9 +39,6 @@ class OrbitStyle:
     many : above this number of impacts, or of states of a section, their marks get small.
     """
 
-    flight: str = "#0072B2"
-    rest: str = "#D55E00"
-    obstacle: str = "#4D4D4D"
     points: int = 4000
     fewest: int = 24
     tail: float = 0.15
@@ -50,44 +48,40 @@ class OrbitStyle:
 STYLE = OrbitStyle()
 
 
-def draw_orbit(orbit: Orbit, axes: Any, style: OrbitStyle = STYLE, since: float | None = None) -> Any:
+def draw_orbit(orbit: Orbit, axes: Any, since: float | None = None) -> Any:
     """Draw x(t) of an orbit on axes, or of its part from a time on."""
     clearance = as_float(orbit.oscillator.clearance)
-    begin, end = float(orbit.tau[0]) if since is None else since, shown_end(orbit, style)
-    times, places = _curve(orbit, (begin, end), style)
-    axes.plot(times, places, color=style.flight, linewidth=1.1, label="flight $x(t)$", zorder=3)
-    axes.axhline(clearance, color=style.obstacle, linewidth=0.8, label="wall $x = c$", zorder=1)
-    _marks(orbit, axes, clearance, begin, style)
-    _rests(orbit, axes, clearance, (begin, end), style)
-    axes.set_xlabel("time $t$")
-    axes.set_ylabel("displacement $x$")
-    axes.set_xlim(begin, end)
+    begin, end = float(orbit.tau[0]) if since is None else since, shown_end(orbit)
+    times, places = _curve(orbit, (begin, end))
+    axes.plot(times, places, color=BLUE, linewidth=1.1, label="flight $x(t)$", zorder=3)
+    axes.axhline(clearance, color=GREY, linewidth=0.8, label="wall $x = c$", zorder=1)
+    _marks(orbit, axes, clearance, begin)
+    _rests(orbit, axes, clearance, (begin, end), 4.0)
+    axes.set(xlabel="time $t$", ylabel="displacement $x$", xlim=(begin, end))
     high = axes.get_ylim()[1]
     axes.set_ylim(clearance - 0.12 * (high - clearance), high)
-    axes.axhspan(axes.get_ylim()[0], clearance, facecolor="0.92", hatch="////", edgecolor="0.75", linewidth=0, zorder=0)
+    axes.axhspan(axes.get_ylim()[0], clearance, facecolor=WALL, hatch="////", edgecolor=HATCH, linewidth=0, zorder=0)
     axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False, fontsize="small")
     return axes
 
 
-def draw_periodic(orbit: PeriodicOrbit, axes: Axes) -> Axes:
+def draw_periodic(orbit: PeriodicOrbit, axes: Any) -> Any:
     """Draw x(t) of a periodic orbit from its first impact on, over its k periods."""
     if orbit.kind == "free" or not orbit.visible:
         raise refuse("orbit to plot", orbit, "a periodic orbit with impacts that is visible")
     impacts = IMPACTS if orbit.kind == "chatter" else int(orbit.n)
-    draw_orbit(flown(orbit.oscillator, orbit.tau[0], orbit.v[0], impacts), axes)
-    return axes
+    return draw_orbit(flown(orbit.oscillator, orbit.tau[0], orbit.v[0], impacts), axes)
 
 
-def draw_section(section: Section, axes: Any, style: OrbitStyle = STYLE) -> Any:
+def draw_section(section: Section, axes: Any) -> Any:
     """Draw the states of a section in the plane of x and x'."""
-    size = 4.0 if section.t.size <= style.many else 1.2
-    axes.plot(section.x, section.xdot, "o", color=style.flight, markersize=size, markeredgewidth=0, rasterized=True)
-    axes.set_xlabel("displacement $x$")
-    axes.set_ylabel("velocity $\\dot x$")
+    size = 4.0 if section.t.size <= STYLE.many else 1.2
+    axes.plot(section.x, section.xdot, "o", color=BLUE, markersize=size, markeredgewidth=0, rasterized=True)
+    axes.set(xlabel="displacement $x$", ylabel="velocity $\\dot x$")
     return axes
 
 
-def shown_end(orbit: Orbit, style: OrbitStyle) -> float:
+def shown_end(orbit: Orbit) -> float:
     """The right edge: the last event, and a tail if a flight or a rest follows it."""
     first, last = float(orbit.tau[0]), float(orbit.tau[-1])
     open_ended = bool(orbit.phases) and not orbit.phases[-1][2] <= last
@@ -95,18 +89,17 @@ def shown_end(orbit: Orbit, style: OrbitStyle) -> float:
     usual = as_float(period) if period is not None else 1.0
     if not open_ended:
         return last if last > first else first + usual
-    return last + max(style.tail * (last - first), 0.25 * usual)
+    return last + max(STYLE.tail * (last - first), 0.25 * usual)
 
 
-def _curve(orbit: Orbit, ends: tuple[float, float], style: OrbitStyle) -> tuple[Any, Any]:
-    times: list[Any] = []
-    places: list[Any] = []
+def _curve(orbit: Orbit, ends: tuple[float, float]) -> tuple[Any, Any]:
+    times, places = list[Any](), list[Any]()
     speed = dict(zip(orbit.tau.tolist(), orbit.v.tolist(), strict=True))
     for kind, start, stop in orbit.phases:
         if kind not in ("flight", "no_return") or stop <= ends[0]:
             continue
         stop = min(stop, ends[1])
-        count = max(style.fewest, int(style.points * (stop - start) / (ends[1] - ends[0])))
+        count = max(STYLE.fewest, int(STYLE.points * (stop - start) / (ends[1] - ends[0])))
         inside = np.linspace(0.0, stop - start, count)
         times += [start + inside, [np.nan]]
         off_wall = orbit.height > 0 and start == orbit.tau[0]
@@ -115,18 +108,18 @@ def _curve(orbit: Orbit, ends: tuple[float, float], style: OrbitStyle) -> tuple[
     return (np.concatenate(times), np.concatenate(places)) if times else ([], [])
 
 
-def _marks(orbit: Orbit, axes: Any, clearance: float, begin: float, style: OrbitStyle) -> None:
+def _marks(orbit: Orbit, axes: Any, clearance: float, begin: float) -> None:
     looks = {
-        "impact": ("o", "impact", "white"),
-        "graze": ("^", "graze", "white"),
-        "complete": ("X", "end of chatter (summed)", style.rest),
-        "release": (">", "lifts off", style.rest),
+        "impact": ("o", "impact", WHITE),
+        "graze": ("^", "graze", WHITE),
+        "complete": ("X", "end of chatter (summed)", VERMILLION),
+        "release": (">", "lifts off", VERMILLION),
     }
     for kind, (marker, label, face) in looks.items():
         times = orbit.tau[(orbit.kind == kind) & (orbit.tau >= begin)]
         if not times.size:
             continue
-        small = kind == "impact" and times.size > style.many
+        small = kind == "impact" and times.size > STYLE.many
         axes.plot(
             times,
             np.full(times.size, clearance),
@@ -136,143 +129,137 @@ def _marks(orbit: Orbit, axes: Any, clearance: float, begin: float, style: Orbit
             zorder=5,
             markersize=2.5 if small else 5.5,
             markerfacecolor=face,
-            markeredgecolor="black",
+            markeredgecolor=BLACK,
             markeredgewidth=0.4 if small else 0.8,
             clip_on=False,
         )
 
 
-def _rests(orbit: Orbit, axes: Any, clearance: float, ends: tuple[float, float], style: OrbitStyle) -> None:
-    label: str | None = "at rest on the wall"
-    for kind, start, stop in orbit.phases:
-        if kind == "sticking" and stop > ends[0]:
-            axes.plot(
-                [start, min(stop, ends[1])],
-                [clearance, clearance],
-                color=style.rest,
-                linewidth=4.0,
-                label=label,
-                solid_capstyle="butt",
-                zorder=4,
-            )
-            label = None
+def _rests(orbit: Orbit, axes: Any, height: float, ends: tuple[float, float], width: float) -> None:
+    """Bars at a height while the mass is at rest."""
+    times = [(start, min(stop, ends[1])) for kind, start, stop in orbit.phases if kind == "sticking" and stop > ends[0]]
+    for n, rest in enumerate(times):
+        label = None if n else "at rest on the wall"
+        axes.plot(
+            rest, (height, height), color=VERMILLION, linewidth=width, label=label, solid_capstyle="butt", zorder=4
+        )
 
 
-# The sheet: x(t) of the last periods, their phase portrait, and all velocities after impacts.
+# The sheet: x(t) of the last periods, their phase portrait, all velocities after impacts, and the first chatter.
 
-SIZE = (9.6, 6.2)
-"""Inches."""
-PERIODS, IMPACTS = 6.0, 24
-"""How much of the end of an orbit is shown: periods of the forcing, or impacts where it has none."""
-SAMPLES = 4000
-"""States of the phase portrait."""
-LEAST = 1e-12
-"""Velocities below this part of the largest one are drawn there."""
+SIZE = (9.6, 6.2)  # inches
+PERIODS, IMPACTS = 6.0, 24  # that are shown of the end of an orbit; impacts where the forcing has no period
+SAMPLES = 4000  # states of the phase portrait, and of the first chatter
+LEAST = 1e-12  # velocities below this part of the largest one are drawn there
 
 
-def orbit_sheet(orbit: Orbit, style: OrbitStyle = STYLE, figure: Figure | None = None) -> Figure:
-    """The figure of an orbit with its three panels, a new one or an empty one that is given.
+def orbit_sheet(orbit: Orbit, figure: Figure | None = None) -> Figure:
+    """The figure of an orbit, a new one or an empty one that is given; a first chatter has a panel of its own.
 
     Examples
     --------
     >>> from singimpact.impact_oscillator import linear
     >>> figure = orbit_sheet(linear(2, "0.3", "0.5").orbit("1.2", "0.3", impacts=60))
     >>> [axes.get_xlabel() for axes in figure.axes]
-    ['time $t$', 'displacement $x$', 'time $t$']
+    ['time $t$', 'displacement $x$', 'time $t$', 'time before its end']
     """
     from matplotlib.figure import Figure
 
     figure = figure or Figure(figsize=SIZE, dpi=150, layout="constrained")
     grid = figure.add_gridspec(2, 2, width_ratios=(2.0, 1.0))
     since = _since(orbit)
-    motion = draw_orbit(orbit, figure.add_subplot(grid[0, 0]), style, since)
+    motion = draw_orbit(orbit, figure.add_subplot(grid[0, 0]), since)
     whole = since <= orbit.tau[0]
     motion.set_title("displacement" if whole else f"displacement, from t = {since:.6g}", fontsize="medium")
-    motion.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=3, frameon=False, fontsize="small")
-    _portrait(orbit, figure.add_subplot(grid[0, 1]), since, style)
-    _velocities(orbit, figure.add_subplot(grid[1, :]), style, None if whole else since)
+    legend_below(motion, legend_entries(motion), under=0.2)
+    _portrait(orbit, figure.add_subplot(grid[0, 1]), since)
+    chatter = _first_chatter(orbit)
+    _velocities(orbit, figure.add_subplot(grid[1, 0] if chatter.size else grid[1, :]), None if whole else since)
+    if chatter.size:
+        _hops(orbit, figure.add_subplot(grid[1, 1]), chatter)
     return figure
 
 
 def _since(orbit: Orbit) -> float:
     """Where the last part begins: at an event, so that no flight is cut."""
-    first, last = float(orbit.tau[0]), shown_end(orbit, STYLE)
+    first, last = float(orbit.tau[0]), shown_end(orbit)
     if orbit.oscillator.period is None:
         return float(orbit.tau[max(orbit.tau.size - IMPACTS, 0)])
     wanted = last - PERIODS * as_float(orbit.oscillator.period)
     return first if wanted <= first else float(orbit.tau[np.searchsorted(orbit.tau, wanted, side="right") - 1])
 
 
-def _portrait(orbit: Orbit, axes: Any, since: float, style: OrbitStyle) -> None:
+def _portrait(orbit: Orbit, axes: Any, since: float) -> None:
     """x and x' of the last part; impacts are dashed lines along the wall."""
-    wall, end = as_float(orbit.oscillator.clearance), shown_end(orbit, style)
-    first = True
+    wall, end = as_float(orbit.oscillator.clearance), shown_end(orbit)
     for kind, start, stop in orbit.phases:
         if kind not in ("flight", "no_return") or stop <= since or start >= end:
             continue
         stop = min(stop, end)
-        inside = np.linspace(start, stop, max(style.fewest, int(SAMPLES * (stop - start) / (end - since))))
+        inside = np.linspace(start, stop, max(STYLE.fewest, int(SAMPLES * (stop - start) / (end - since))))
         inside[-1] = np.nextafter(stop, start)  # before the impact, not after it
         places = orbit.sample(inside)
-        axes.plot(places.x, places.xdot, color=style.flight, linewidth=0.9)
-    hits = np.flatnonzero((orbit.kind == "impact") & (orbit.tau >= since))
-    for index in hits.tolist():
-        after = float(orbit.v[index])
-        before = float(orbit.sample([np.nextafter(orbit.tau[index], -np.inf)]).xdot[0])
-        axes.plot(
-            [wall, wall],
-            [before, after],
-            color=style.rest,
-            linewidth=1.4,
-            linestyle=(0, (3, 2)),
-            label="impact" if first else None,
-            zorder=4,
-        )
-        first = False
-    axes.axvline(wall, color=style.obstacle, linewidth=0.8)
+        axes.plot(places.x, places.xdot, color=BLUE, linewidth=0.9)
+    hits = (orbit.kind == "impact") & (orbit.tau >= since)
+    if hits.any():
+        before = orbit.sample(np.nextafter(orbit.tau[hits], -np.inf)).xdot
+        jumps = np.stack([before, orbit.v[hits], np.full(before.size, np.nan)], axis=1).ravel()
+        wide = np.full(jumps.size, wall)
+        axes.plot(wide, jumps, color=VERMILLION, linewidth=1.4, linestyle=SHORT_DASHES, label="impact", zorder=4)
+    axes.axvline(wall, color=GREY, linewidth=0.8)
     axes.set(xlabel="displacement $x$", ylabel=r"velocity $\dot x$")
     axes.set_title("phase portrait", fontsize="medium")
-    if not first:
+    if hits.any():
         axes.legend(loc="upper right", frameon=False, fontsize="small")
 
 
-def _velocities(orbit: Orbit, axes: Any, style: OrbitStyle, since: float | None) -> None:
+def _velocities(orbit: Orbit, axes: Any, since: float | None) -> None:
     """The velocity after every impact over time, logarithmic: a chatter is a row of points that falls."""
     hits = orbit.kind == "impact"
     largest = float(orbit.v[hits].max()) if hits.any() else 1.0
     speeds = np.maximum(orbit.v[hits], LEAST * largest)
-    size = 4.0 if hits.sum() <= style.many else 1.8
     axes.plot(
         orbit.tau[hits],
         speeds,
         "o",
-        color=style.flight,
-        markersize=size,
+        color=BLUE,
+        markersize=4.0 if hits.sum() <= STYLE.many else 1.8,
         markeredgewidth=0,
         label="impact",
         rasterized=bool(hits.sum() > 5000),
     )
-    end = shown_end(orbit, style)
+    end = shown_end(orbit)
     low = float(speeds.min()) / 3 if hits.any() else LEAST
-    label: str | None = "at rest on the wall"
-    for kind, start, stop in orbit.phases:
-        if kind == "sticking":
-            axes.plot(
-                [start, min(stop, end)], [low, low], color=style.rest, linewidth=5, solid_capstyle="butt", label=label
-            )
-            label = None
+    _rests(orbit, axes, low, (float(orbit.tau[0]), end), 5.0)
     if since is not None:
-        axes.axvspan(since, end, color="0.92", zorder=0, label="part shown above")
-    axes.set_yscale("log")
-    axes.set(xlabel="time $t$", ylabel="velocity $v$ after an impact", xlim=(orbit.tau[0], end))
+        axes.axvspan(since, end, color=WALL, zorder=0, label="part shown above")
+    axes.set(yscale="log", xlabel="time $t$", ylabel="velocity $v$ after an impact", xlim=(orbit.tau[0], end))
     axes.set_title("all impacts", fontsize="medium")
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=3, frameon=False, fontsize="small")
+    legend_below(axes, legend_entries(axes), under=0.2)
+
+
+def _first_chatter(orbit: Orbit) -> Array:
+    """The launch or lift-off before the first complete chatter, its impacts and its end; empty without two impacts."""
+    end = orbit.tau[orbit.kind == "complete"].min(initial=np.inf)
+    begin = orbit.tau[(orbit.tau < end) & (orbit.kind == "release")].max(initial=orbit.tau[0])
+    times = np.append(orbit.tau[(orbit.tau >= begin) & (orbit.tau < end)], end)
+    return times if times.size > 3 and np.isfinite(end) else times[:0]
+
+
+def _hops(orbit: Orbit, axes: Any, times: Array) -> None:
+    """x - c during a chatter, on logarithmic axes: its hops are about equally wide there."""
+    left = np.geomspace(times[-1] - times[0], times[-1] - times[-2], SAMPLES)[1:-1]
+    heights = orbit.sample(times[-1] - left).x - as_float(orbit.oscillator.clearance)
+    axes.plot(left, heights, color=BLUE, linewidth=0.9)
+    least = heights[left < times[-1] - times[-3]].max() / 10  # below the top of the last hop
+    axes.set(xscale="log", xlim=(left[0], left[-1]), xlabel="time before its end")
+    axes.set(yscale="log", ylim=(least, 2 * heights.max()), ylabel="displacement $x - c$")
+    axes.set_title(f"first chatter, complete at t = {times[-1]:.6g}", fontsize="medium")
 
 
 # The mass that bounces, beside its x(t).
 
-BLOCK = ((-1, 0), (1, 0), (1, 2), (-1, 2), (-1, 0))
-"""The marker of the mass, which stands on its place."""
+BLOCK = ((-1, 0), (1, 0), (1, 2), (-1, 2), (-1, 0))  # the marker of the mass, which stands on its place
 
 
 @dataclass(frozen=True, eq=False)
@@ -364,8 +351,8 @@ def animate(orbit: Orbit, between: tuple[float, float] | None = None, frames: in
 
     if not isinstance(orbit, Orbit):
         raise refuse("orbit", type(orbit).__name__, "an orbit of `osc.orbit`")
-    first, last = float(orbit.tau[0]), max(shown_end(orbit, STYLE), orbit.end)
-    begin, end = (_since(orbit), shown_end(orbit, STYLE)) if between is None else map(float, interval(between))
+    first, last = float(orbit.tau[0]), max(shown_end(orbit), orbit.end)
+    begin, end = (_since(orbit), shown_end(orbit)) if between is None else map(float, interval(between))
     if not first <= begin < end <= last:
         raise refuse("between", between, f"two times from {first:.6g} to {last:.6g}")
     times = np.linspace(begin, end, whole("frames", frames, 2, 10_000))
@@ -377,9 +364,9 @@ def animate(orbit: Orbit, between: tuple[float, float] | None = None, frames: in
     for line in moving.lines:
         line.set_clip_on(True)  # marks of impacts that are not among the pictures
     still.set(xlim=(-1, 1), xticks=[], ylabel="displacement $x$")
-    still.axhspan(still.get_ylim()[0], wall, facecolor="0.92", hatch="////", edgecolor="0.75", linewidth=0)
-    (mass,) = still.plot([0], [heights[0]], marker=BLOCK, color=STYLE.flight, markersize=32)
-    (point,) = moving.plot([begin], [heights[0]], "o", color=STYLE.rest, markersize=6, zorder=6)
+    still.axhspan(still.get_ylim()[0], wall, facecolor=WALL, hatch="////", edgecolor=HATCH, linewidth=0)
+    (mass,) = still.plot([0], [heights[0]], marker=BLOCK, color=BLUE, markersize=32)
+    (point,) = moving.plot([begin], [heights[0]], "o", color=VERMILLION, markersize=6, zorder=6)
 
     def show(at: int) -> tuple[Any, Any]:
         mass.set_ydata([heights[at]])

@@ -16,7 +16,7 @@ from singimpact.algebra.numbers import as_float, constant
 from singimpact.inputs import InputError, refuse, require_known, shown, unknown
 from singimpact.oscillator.model import FIELDS, Oscillator, read_fields
 from singimpact.scenes.layer_data import Results
-from singimpact.scenes.style import PENS
+from singimpact.scenes.style import BLACK, GREY, PENS, WHITE
 from singimpact.store import read_bounded
 from singimpact.surface.curve import STATES, SURFACE, Curve, window_ends
 
@@ -53,12 +53,9 @@ def _first_hits(pen: str) -> Drawer:
     """The stretches that are first hits."""
 
     def draw(axes: Any, curves: list[Curve], label: str) -> None:
-        given: str | None = label
-        for curve in curves:
-            for part in curve.parts(curve.visible):
-                look = PENS[pen].line() | {"linewidth": 3.2, "linestyle": "solid"}
-                axes.plot(*part.points.T, **look, label=given)
-                given = None
+        look = PENS[pen].line() | {"linewidth": 3.2, "linestyle": "solid"}
+        for n, part in enumerate(part for curve in curves for part in curve.parts(curve.visible)):
+            axes.plot(*part.points.T, **look, label=None if n else label)
 
     return draw
 
@@ -262,15 +259,15 @@ class Scene:
         from matplotlib import patheffects
 
         (left, right), (low, high) = self._box()
-        axes.axhline(0, color="0.4", linewidth=0.8, zorder=1)
+        axes.axhline(0, color=GREY, linewidth=0.8, zorder=1)
         axes.set(xlim=(left, right), ylim=(low, high), xlabel=r"time $\tau$", title=self.title)
         axes.set_ylabel("flight time $t$" if self.plane == SURFACE else "velocity $v$")
-        halo = [patheffects.withStroke(linewidth=3, foreground="white")]
+        halo = [patheffects.withStroke(linewidth=3, foreground=WHITE)]
         for letter, x, y in self.marks:
-            axes.plot([x], [y], "o", color="black", markersize=4, zorder=6, clip_on=False)
+            axes.plot([x], [y], "o", color=BLACK, markersize=4, zorder=6, clip_on=False)
             axes.annotate(letter, (x, y), (5, 5), textcoords="offset points", path_effects=halo, zorder=7)
         if refusal := self._absent(missing):
-            look = {"ha": "center", "va": "center", "color": "0.35", "wrap": True, "path_effects": halo, "zorder": 8}
+            look = {"ha": "center", "va": "center", "color": GREY, "wrap": True, "path_effects": halo, "zorder": 8}
             axes.text(0.5, 0.5, refusal, transform=axes.transAxes, **look)
         if axes.get_legend_handles_labels()[0]:
             # a small picture keeps its axes: the legend lies inside them, however wide its words are

@@ -3,28 +3,76 @@
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from singimpact.branches.events import KINDS
 
 BLUE, VERMILLION, GREEN, PURPLE, SKY, ORANGE = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00"
-BLACK, GREY, SHADE, WHITE = "#000000", "#6E6E6E", "#E3E3E3", "#FFFFFF"
-OPEN = {"color": BLACK, "markerfacecolor": WHITE}
-"""The look of an open marker."""
+YELLOW, SURFACE = "#F0E442", "#BBD9EE"
+BLACK, GREY, HATCH, SHADE, WALL, WHITE = "#000000", "#6E6E6E", "#BFBFBF", "#E3E3E3", "#EBEBEB", "#FFFFFF"
+OPEN: dict[str, Any] = {"color": BLACK, "markerfacecolor": WHITE}  # a marker
 DASHES, DOTS, DASH_DOT, SHORT_DASHES = (0, (5, 2)), (0, (1, 1.4)), (0, (6, 2, 1, 2)), (0, (2.6, 1.2))
 
 
-ON_DARK = {BLACK: "#FFFFFF", GREY: "#A6A6A6", BLUE: "#4DA6DE", SHADE: "#3C3C3C"}
-"""Replacements on a dark ground for the darkest and the lightest colours; the others are visible on both grounds."""
+CLASSES = {
+    "not decided": "#F2F2F2",
+    "sensitive": "#E6E6E6",
+    "unresolved": "#FAFAFA",
+    "never returns": WHITE,
+    "no impact": WHITE,
+    "chaotic": "#C9C9C9",
+    "rest": BLACK,
+}
+"""Classes of states that settle on no periodic orbit."""
+CHATTERED = (BLACK, "#3D3D3D", "#6B6B6B")  # chatter for ever, of one lift-off or another
+CLASS_ORBITS = (ORANGE, BLUE, SKY, VERMILLION, GREEN, PURPLE, YELLOW, "#8C8C8C")  # neighbours differ in lightness
+# on a dark ground: colours that are too dark or too light there; the others are visible on both grounds
+ON_DARK = {BLUE: "#4DA6DE", SURFACE: "#2F5D7C"}
+# white and black there, as red, green and blue: not grey, so that no colour is replaced twice
+DARK_GROUND, DARK_INK = (0x14, 0x18, 0x1C), (0xF2, 0xF4, 0xF6)
 
 
 def on_dark(color: str) -> str:
-    """A colour of this table as it is drawn on a dark ground.
+    """A colour as it is drawn on a dark ground: greys change places, light ones with dark ones.
 
     Examples
     --------
-    >>> on_dark(BLACK), on_dark(ORANGE) == ORANGE
-    ('#FFFFFF', True)
+    >>> on_dark(BLACK), on_dark(WHITE), on_dark(ORANGE) == ORANGE
+    ('#F2F4F6', '#14181C', True)
     """
-    return ON_DARK.get(color, color)
+    red, green, blue = (int(color[at : at + 2], 16) / 255 for at in (1, 3, 5))
+    if not red == green == blue:
+        return ON_DARK.get(color, color)
+    mixed = (round(ink + red * (ground - ink)) for ground, ink in zip(DARK_GROUND, DARK_INK, strict=True))
+    return "#" + "".join(f"{light:02X}" for light in mixed)
+
+
+def darken(figure: Any) -> None:
+    """Replace the colours of a figure that is drawn by those of a dark ground."""
+    from matplotlib.patheffects import withStroke
+    from matplotlib.text import Annotation
+
+    arrows = [text.arrow_patch for text in figure.findobj(Annotation) if text.arrow_patch is not None]
+    for artist in [*figure.findobj(), *arrows]:
+        for name in ("color", "facecolor", "edgecolor", "markerfacecolor", "markeredgecolor"):
+            if hasattr(artist, f"get_{name}") and hasattr(artist, f"set_{name}"):
+                colors = _replaced(getattr(artist, f"get_{name}")())
+                artist.set(**{name: colors[0] if len(colors) == 1 else colors} if colors else {})
+        if artist.get_path_effects():
+            artist.set_path_effects([withStroke(linewidth=3, foreground=on_dark(WHITE))])
+    for axes in figure.axes:
+        axes.tick_params(which="both", colors=on_dark(BLACK))  # also of the ticks that are made later
+        for image in axes.images:
+            pixels = np.asarray(image.get_array())
+            classes, at = np.unique(pixels.reshape(-1, pixels.shape[-1]), axis=0, return_inverse=True)
+            image.set_data(np.array(_replaced(classes))[at.ravel()].reshape(*pixels.shape[:2], 4))
+
+
+def _replaced(colors: Any) -> list[tuple[float, ...]]:
+    """Colours on a dark ground, as red, green, blue and opacity."""
+    from matplotlib.colors import to_hex, to_rgb, to_rgba_array
+
+    return [(*to_rgb(on_dark(to_hex(color).upper())), float(color[3])) for color in to_rgba_array(colors)]
 
 
 @dataclass(frozen=True)

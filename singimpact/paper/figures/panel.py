@@ -77,7 +77,8 @@ class Picture:
     ----------
     number : in the paper, or B1, B2, ... beyond it. title : what it shows. claims : ids of what it illustrates.
     model : text of the oscillator. panels : with their rows and columns. facts : numbers that the figure shows, for
-    tests. caption : what is seen where, in sentences with formulas between dollars.
+    tests. caption : what is seen where, in sentences with formulas between dollars. legend : where it stands in the
+    last panel, as matplotlib calls places; without one it stands below the panels, or where the last row has none.
     """
 
     number: int | str
@@ -88,6 +89,7 @@ class Picture:
     columns: int = 1
     facts: dict[str, float] = field(default_factory=dict)
     caption: str = ""
+    legend: str = ""
 
     def to_dict(self) -> dict[str, Any]:
         """The data as plain lists and numbers."""

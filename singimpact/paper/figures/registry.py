@@ -95,9 +95,9 @@ def figure(number: Any, *, serif: bool = False, dark: bool = False) -> Any:
     >>> len(figure(12).axes)
     4
     """
-    from singimpact.paper.figures.figure_rendering import Look, drawn
+    from singimpact.paper.figures.figure_rendering import drawn
 
-    return drawn(picture(number), Look(serif, dark))
+    return drawn(picture(number), serif, dark)
 
 
 # Figures kept in the user's cache folder as numbers, so that an interrupted run continues where it stopped.

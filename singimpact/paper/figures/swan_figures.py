@@ -10,6 +10,7 @@ from singimpact.dynamics.unfolded_swan import SwanConfiguration, swan_configurat
 from singimpact.impact_oscillator import linear
 from singimpact.paper.figures.contact_figures import reset
 from singimpact.paper.figures.panel import Dot, Line, Panel, Picture, Point, Region, arc
+from singimpact.scenes.style import WHITE
 from singimpact.surface.impact_surface import ImpactSurface
 
 FINE = 1 / 3000  # of the window of the configuration: its outline is magnified until the usual chords would show
@@ -152,7 +153,7 @@ def figure_14() -> Picture:
                 words=r"$\mathcal{T}$: visible part of $V'$",
                 place=(right - 1.9 * size, 4.6 * size),
             ),
-            Region(hidden_negative(), "#FFFFFF"),
+            Region(hidden_negative(), WHITE),
         ],
     )
     caption = (
@@ -223,7 +224,7 @@ def figure_12() -> Picture:
         [Line(outline, "P", "P"), Line(arc_p, "jump", "arc BE'")],
         [Dot("$D'$", places["D"])],
         [Dot("$A'=C'$", places["A"]), Dot("$B'$", places["B"]), Dot("$E'$", places["E"])],
-        [Region(arc_p, label=r"$\mathcal{S}'$", words=IMAGES, place=(swan.A + 0.1 * size, 0.1 * v))],
+        [Region(arc_p, label=r"$\mathcal{S}'$", words=IMAGES, place=(swan.A + 0.35 * size, 0.11 * v))],
     )
     second = _views(
         swan,
@@ -232,7 +233,7 @@ def figure_12() -> Picture:
         [Line(outline, "P", "P"), Line(arc_phi, "Z", "arc AE''", words=r"$\phi$ of the visible arc $AE$ of $Z$")],
         [Dot("$C''$", images["C"])],
         [Dot("$A''$", images["A"]), Dot("$B''=D''$", images["B"]), Dot("$E''$", images["E"])],
-        [Region(arc_phi, label=r"$\mathcal{S}''$", words=IMAGES, place=(swan.B - 0.1 * size, -0.1 * v))],
+        [Region(arc_phi, label=r"$\mathcal{S}''$", words=IMAGES, place=(swan.B - 0.25 * size, -0.11 * v))],
     )
     panels = [first[0], second[0], first[1], second[1]]
     caption = (

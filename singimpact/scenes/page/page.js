@@ -1,13 +1,12 @@
-// What is drawn: FILM has the curves of every place of the slider, MODEL the oscillator, PENS colours and lines.
+// What is drawn: FILM has the curves of every place of the slider, MODEL the oscillator, PENS colours and lines,
+// GROUNDS what is behind and beside them.
 
 const SVG = "http://www.w3.org/2000/svg";
 const at = (id) => document.getElementById(id);
 let turn_now = MODEL.period;  // the period at the sliders' parameters, null where it is not known
 const state = { frame: FILM.start, r: MODEL.r, given: { ...MODEL.parameters }, start: null, orbit: null };
 const NIGHT = matchMedia("(prefers-color-scheme: dark)");
-const colours = () => NIGHT.matches
-  ? { ink: "#f0f0f0", grid: "#33373c", axis: "#8a8a8a", wall: "#24272b", ground: "#16181b" }
-  : { ink: "#000", grid: "#e6e6e6", axis: "#8a8a8a", wall: "#f1f1f1", ground: "#fff" };
+const colours = () => GROUNDS[NIGHT.matches ? "night" : "day"];
 const short = (value, digits = 6) => String(Number(value.toPrecision(digits)));
 
 function made(name, attributes, text) {
@@ -191,7 +190,7 @@ function show_orbit(states, view) {
       for (let m = Math.ceil((view.tau[0] - tau) / turn); tau + m * turn <= view.tau[1]; m += 1) places.push([tau + m * turn, orbit.v[n], 2.6]);
     }
   });
-  dots(states, places, "orbit", { fill: PENS.orbit.color, stroke: "#5a3d00", "stroke-width": 0.7 });
+  dots(states, places, "orbit", { fill: PENS.orbit.color, stroke: colours().ink, "stroke-width": 0.7 });
   dots(states, [[state.start[0], state.start[1], 6]], "start", { fill: "none", stroke: colours().ink, "stroke-width": 1.8 });
   const start = orbit.tau[0], span = turn ? 8 * turn : 50;
   const impacts = orbit.kind.filter((kind) => kind === "impact").length;
@@ -202,9 +201,9 @@ function show_orbit(states, view) {
   const here = panel("motion", [start, until], [-0.08 * rise, 1.06 * rise], { x: "time t", y: "x − c", title: "x - c over time" }, (wide) => wide < 600 ? 0.62 : 0.26);
   here.inside.append(made("line", { x1: here.box.left, x2: here.box.right, y1: here.y(0), y2: here.y(0), stroke: colours().ink, "stroke-width": 1.6 }));
   const path = points.filter((each) => Number.isFinite(each[1])).flat();
-  here.inside.append(made("path", { d: path.reduce((text, value, n) => n % 2 ? text + here.y(value).toFixed(2) : `${text}${n ? "L" : "M"}${here.x(value).toFixed(2)} `, ""), "data-curve": "motion", ...stroke({ ...PENS.orbit, color: "#9a6700", dashes: "none" }) }));
+  here.inside.append(made("path", { d: path.reduce((text, value, n) => n % 2 ? text + here.y(value).toFixed(2) : `${text}${n ? "L" : "M"}${here.x(value).toFixed(2)} `, ""), "data-curve": "motion", ...stroke({ ...PENS.orbit, dashes: "none" }) }));
   film = { here, points: points.filter((each) => Number.isFinite(each[1])), start, until, turn: turn || span / 8 };
-  dots(here, orbit.tau.flatMap((tau, n) => tau <= until && n ? [[tau, 0, 2.4]] : []), "impacts", { fill: PENS.orbit.color, stroke: "#5a3d00", "stroke-width": 0.7 });
+  dots(here, orbit.tau.flatMap((tau, n) => tau <= until && n ? [[tau, 0, 2.4]] : []), "impacts", { fill: PENS.orbit.color, stroke: colours().ink, "stroke-width": 0.7 });
   const several = (n, one, more) => `${n} ${n === 1 ? one : more}`;
   const told = [`${several(impacts, "impact", "impacts")} until t = ${short(orbit.tau[orbit.tau.length - 1])}; ${WORDS[orbit.ending] || `flight ended with code ${orbit.ending}`}.`];
   const count = (kind) => orbit.kind.filter((each) => each === kind).length;

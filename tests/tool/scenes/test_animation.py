@@ -81,7 +81,9 @@ def test_refusals(orbit, call, told):
 
 
 def test_sheets_of_an_orbit_and_of_a_diagram_with_branches(orbit):
-    assert [axes.get_xlabel() for axes in si.plot(orbit, sheet=True)] == ["time $t$", "displacement $x$", "time $t$"]
+    labels = [axes.get_xlabel() for axes in si.plot(orbit, sheet=True)]
+    assert labels[:3] == ["time $t$", "displacement $x$", "time $t$"]
+    assert labels[3:] == ["time before its end"] * ("complete" in orbit.kind)
     osc = si.linear("2.8", "0.1", "0.8", amplitude=-1)
     diagram = osc.bifurcation("clearance", (0, "0.2"), points=3)
     above, below = si.plot([diagram, osc.periodic(1, 1)[0].branch("clearance", (0, "0.2"))], sheet=True)

@@ -458,7 +458,7 @@ def test_by_night_it_is_dark(opened):
     try:
         assert day == ("rgb(255, 255, 255)", PENS["jump"].color)
         browser.execute_async_script("setTimeout(arguments[0], 100)")
-        assert browser.execute_script(ground) == "rgb(22, 24, 27)"
+        assert browser.execute_script(ground) == "rgb(20, 24, 28)"
         assert browser.execute_script(line) == on_dark(PENS["jump"].color) != day[1]
     finally:
         browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
