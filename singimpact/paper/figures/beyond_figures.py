@@ -71,7 +71,7 @@ def figure_B4() -> Picture:
                 plain.append(_point(r, w))
                 beside.append(_point(r, float(np.log10(w - gamma_height(r)))))
     panels = [
-        Panel(((0.0, 1.0), (0.0, 0.52)), "$r$", r"$v/(a'(A)h^2)$", "(a)", plain),
+        Panel(((0.0, 1.0), (0.0, 0.52)), "$r$", r"$v/(a'(A)h^2)$", "(a) heights", plain),
         Panel(((0.0, 1.0), (-4.2, -0.2)), "$r$", r"$\log_{10}(w - w_\gamma)$", "(b) above $\\gamma$", beside),
     ]
     caption = (
@@ -158,7 +158,7 @@ def figure_B6() -> Picture:
     hops.append(Line(limit, "at", "limit", words=r"$\frac{1}{24}(s+1)^3(3-s)$"))
     top = 1.15 * float(height.max())
     panels = [
-        Panel(((times[0], times[-1]), (-0.08 * top, top)), "$t$", "$x - c$", "(a)", [whole]),
+        Panel(((times[0], times[-1]), (-0.08 * top, top)), "$t$", "$x - c$", "(a) two periods", [whole]),
         Panel(((-1.2, 6.6), (-0.1, 1.25)), "$s$", r"$(x-c)/(|a''|H^4)$", "(b) one hop", hops),
     ]
     caption = (

@@ -1,6 +1,7 @@
 """Figures 3 to 8: the dynamics of G near Pi_0, at regular, tangency and swan points."""
 
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
@@ -288,7 +289,7 @@ def figure_5() -> Picture:
             "orbit",
             "orbit above gamma",
             beads=True,
-            words=r"impacts of two orbits above $\gamma$, joined in their order",
+            words="impacts of two orbits above $\\gamma$,\njoined in their order",
         )
         for share in (0.1, 0.3)
     ]
@@ -310,6 +311,7 @@ def figure_5() -> Picture:
         [panel],
         facts=facts,
         caption=caption,
+        legend="upper right",
     )
 
 
@@ -390,14 +392,17 @@ def figure_8() -> Picture:
     low, high, v = -0.45, 0.45, 0.03
     frame = Window((low, high), (0.0, v), 1 / ARCS)
     (curve, *_) = gammas_within(model, frame)
-    lines = leaves(model, frame, [*np.linspace(-0.42, -0.1, 7).tolist(), *np.linspace(0.1, 0.58, 9).tolist()])
+    feet = [*np.linspace(-0.42, -0.1, 7).tolist(), *np.linspace(0.1, 0.58, 9).tolist()]
+    words = r"stable manifolds $W^s_\tau$; hairpins are the ends of their loops"
+    lines = [replace(line, words=words) for line in leaves(model, frame, feet)]
     lines.append(Line(curve.points, "gamma", "gamma", r"$\gamma$", _share(curve.points, -0.13)))
     near = curve.points[(curve.points[:, 0] < -0.02) & (curve.points[:, 0] > -0.2)]
     panel = Panel(((low, high), (-0.1 * v, v)), lines=lines, dots=[Dot("$w_*$", (0.0, 0.0))])
     caption = (
         "At a negative swan point the acceleration at the wall has a double zero with $a'' < 0$. The curve "
         r"$\gamma$ ends there with a cubic tangency. Stable manifolds of later times flatten as they pass above "
-        r"$w_*$ and then run down beside $\gamma$ in long narrow loops."
+        r"$w_*$ and then run down beside $\gamma$ in long narrow loops: each hairpin above $\gamma$ is the lower end "
+        "of a loop, at which one stable manifold comes down, turns, and goes up again."
     )
     return Picture(
         8,

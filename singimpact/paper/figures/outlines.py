@@ -95,7 +95,8 @@ class Change:
     over, value : the name of a number and its value. tau, t : the flight from rest. half : of the window around it.
     step : of the number, before and after. degree : of the polynomial in tau that is taken off v, so that branches
     which nearly coincide are seen apart; it does not change what kind a point of the outline is. shown : half of the
-    width of the picture. pixels : of the curves, many where the shear magnifies.
+    width of the picture. pixels : of the curves, many where the shear magnifies. power : of ten by which v - q is
+    multiplied.
     """
 
     kind: str
@@ -108,10 +109,11 @@ class Change:
     degree: int
     shown: float
     pixels: int
+    power: int = 0
 
 
 CHANGES = (
-    Change("lips", "w", 2.2346139563997207, 0.5665872036436089, 4.089046551292352, 0.2, 0.0001, 3, 0.03, 3000),
+    Change("lips", "w", 2.2346139563997207, 0.5665872036436089, 4.089046551292352, 0.2, 0.0001, 3, 0.03, 3000, 6),
     Change("beaks", "w", 1.9669260638735848, 2.5507220258801437, 5.89964018967169, 0.6, 0.003, 3, 0.25, 600),
     Change("swallowtail", "clearance", 1.0, 0.0, 5.1927096149235386, 0.6, 0.04, 1, 0.03, 1500),
 )
@@ -163,6 +165,7 @@ def _panels(letter: str, change: Change, rows: list[tuple[str, list[Curve]]]) ->
     shown = [shear(curve.points) for _, surface in rows for curve in surface]
     box = _box(change, middle, shown)
     name, panels = "c" if change.over == "clearance" else change.over, []
+    y = r"$v - q(\tau)$" if not change.power else rf"$10^{change.power}\,(v - q(\tau))$"
     for relation, surface in rows:
         cusps = [shear(curve.marked("cusp")) for curve in surface]
         cusps += [point] if relation == "=" and change.kind == "lips" else []
@@ -172,7 +175,7 @@ def _panels(letter: str, change: Change, rows: list[tuple[str, list[Curve]]]) ->
         panels.append(
             Panel(
                 box,
-                y=r"$v - q(\tau)$",
+                y=y if relation == "<" else "",
                 note=note,
                 title=f"({letter}) {change.kind}: ${name} {relation} {name}_0$",
                 lines=lines,
@@ -184,10 +187,12 @@ def _panels(letter: str, change: Change, rows: list[tuple[str, list[Curve]]]) ->
 
 def _shear(change: Change, rows: list[tuple[str, list[Curve]]], middle: float) -> Callable[[Array], Array]:
     """(tau, v) -> (tau, v - q(tau)) with q near to all branches."""
-    points = np.vstack([curve.points for _, made in rows for curve in made])
+    points = np.vstack([curve.points for _, outline in rows for curve in outline])
     points = points[np.abs(points[:, 0] - middle) < change.shown]
     fitted = np.polyfit(points[:, 0] - middle, points[:, 1], change.degree)
-    return lambda place: np.stack([place[:, 0], place[:, 1] - np.polyval(fitted, place[:, 0] - middle)], axis=1)
+    return lambda place: np.stack(
+        [place[:, 0], 10.0**change.power * (place[:, 1] - np.polyval(fitted, place[:, 0] - middle))], axis=1
+    )
 
 
 def _middle(change: Change, rows: list[tuple[str, list[Curve]]]) -> float:

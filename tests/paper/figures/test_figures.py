@@ -328,3 +328,69 @@ def test_figure_b5_from_the_command_line(tmp_path):
     assert done.exit_code == 0, done.output
     assert (tmp_path / "figureB5.png").stat().st_size > 10000
     assert json.loads((tmp_path / "figureB5.json").read_text())["figure"] == "B5"
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.slow) if name in SECONDS else name for name in BEYOND]
+)
+def test_figures_beyond_the_paper_have_titles(name):
+    """Each carries its title, and no panel of several has a letter alone."""
+    figure = si.figure(name)
+    assert figure.get_suptitle() == made(name).title
+    titles = [axes.get_title() for axes in figure.axes]
+    assert len(titles) == 1 or all(len(title) > 4 for title in titles)
+
+
+def test_figures_of_the_paper_leave_their_titles_to_its_captions():
+    assert si.figure(11).get_suptitle() == ""
+
+
+def test_8_says_what_the_hairpins_are():
+    from singimpact.paper import legend_words
+
+    assert "hairpin" in made(8).caption
+    assert any("hairpin" in words for words in legend_words(made(8)))
+
+
+def ink(figure):
+    """The pixels of a light figure that are not white."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    return np.asarray(canvas.buffer_rgba())[:, :, :3].min(axis=2) < 250
+
+
+def test_1_fills_its_picture():
+    dark = ink(si.figure(1))
+    for axis in (0, 1):
+        used = np.flatnonzero(dark.any(axis=axis))
+        assert np.ptp(used) > 0.8 * dark.shape[1 - axis]
+
+
+def test_16_has_no_empty_quarter():
+    dark = ink(si.figure(16))
+    height, width = dark.shape
+    for rows in (slice(0, height // 2), slice(height // 2, height)):
+        for columns in (slice(0, width // 2), slice(width // 2, width)):
+            quarter = np.argwhere(dark[rows, columns])
+            assert np.ptp(quarter[:, 1]) > 0.3 * width
+
+
+@pytest.mark.slow
+def test_5_has_its_legend_where_no_curve_is():
+    figure = si.figure(5)
+    figure.canvas.draw()
+    (axes,) = figure.axes
+    box = axes.get_legend().get_window_extent()
+    assert axes.bbox.x0 < box.x0 < box.x1 <= axes.bbox.x1 + 1
+    points = np.vstack([dense(line) for line in axes.lines])
+    assert not ((points > [box.x0, box.y0]) & (points < [box.x1, box.y1])).all(axis=1).any()
+
+
+@pytest.mark.slow
+def test_2_has_no_power_of_ten_beside_its_titles():
+    figure = si.figure(2)
+    figure.canvas.draw()
+    assert [axes.yaxis.get_offset_text().get_text() for axes in figure.axes] == [""] * 9
+    assert [bool(axes.get_ylabel()) for axes in figure.axes] == [True, False, False] * 3
