@@ -15,5 +15,6 @@ si.plot(orbit, sheet=True)
 plt.show()
 
 # %%
-# Above: displacement over the last six periods, and the phase portrait. Below: the velocity after every impact. Each
-# falling row of points is a chatter; the bars are times at rest.
+# Above: displacement over the last six periods, and the phase portrait. Below, left: the velocity after every impact.
+# Each falling row of points is a chatter; the bars are times at rest. Right: the hops of the first chatter, on
+# logarithmic axes, where they are about equally wide.

@@ -22,7 +22,7 @@ from singimpact.paper.figures.panel import Dot, Line, Panel, Picture, Point, Reg
 from singimpact.paper.trials import loop_heights
 from singimpact.paper.trials.hertz_orbits import POWERS, STARTS, measured
 from singimpact.paper.trials.universal_foot import covering, elastic, foot, scaled
-from singimpact.scenes.style import SKY
+from singimpact.scenes.style import SURFACE
 from singimpact.surface.curve import Curve
 from singimpact.surface.impact_surface import ImpactSurface
 from singimpact.surface.outline_transitions import transitions
@@ -120,7 +120,7 @@ def figure_B5() -> Picture:
     ]
     regions = [
         Region(band, words="3 within 2 %"),
-        Region(np.vstack([tops, bottoms[::-1]]), SKY, words="proved bounds, for all $r$ up to 0.95"),
+        Region(np.vstack([tops, bottoms[::-1]]), SURFACE, words="proved bounds, for all $r$ up to 0.95"),
     ]
     facts = {"limit": limit, "most": float(tops[:, 1].max()), "least": float(bottoms[:, 1].min())}
     caption = (

@@ -338,6 +338,16 @@ function slider(id, label, low, high, value, changed) {
 
 const PAGE_NOW = {}, back = [];
 
+function legend() {
+  at("legend").replaceChildren(...LEGEND.map((line) => {
+    const item = document.createElement("li"), svg = made("svg", { width: 34, height: 10 });
+    svg.append(made("line", { x1: 1, x2: 33, y1: 5, y2: 5, ...stroke(PENS[line.name]) }));
+    if (line.dot) svg.replaceChildren(made("circle", { cx: 17, cy: 5, r: 4, fill: line.dot }));
+    item.append(svg, line.label);
+    return item;
+  }));
+}
+
 function begin() {
   const clearance = at("clearance"), last = FILM.frames.length - 1;
   clearance.max = last; clearance.value = FILM.start;
@@ -352,7 +362,7 @@ function begin() {
     location.replace(address());
     if (navigator.clipboard) navigator.clipboard.writeText(location.href).catch(() => {});
   });
-  NIGHT.addEventListener("change", show);
+  NIGHT.addEventListener("change", () => { legend(); show(); });
   const mark = (n, text, kind) => {
     const span = document.createElement("span");
     span.textContent = text; span.className = kind; span.style.left = `${100 * n / last}%`;
@@ -384,13 +394,7 @@ function begin() {
     if (px < left || px > right) return;
     start_orbit(Number(tau.toPrecision(6)), Math.max(0, Number(v.toPrecision(5))));
   });
-  for (const line of LEGEND) {
-    const item = document.createElement("li"), svg = made("svg", { width: 34, height: 10 });
-    svg.append(made("line", { x1: 1, x2: 33, y1: 5, y2: 5, ...stroke(PENS[line.name]) }));
-    if (line.dot) svg.replaceChildren(made("circle", { cx: 17, cy: 5, r: 4, fill: line.dot }));
-    item.append(svg, line.label);
-    at("legend").append(item);
-  }
+  legend();
   let width = 0;
   new ResizeObserver(() => {
     if (width !== document.body.clientWidth) { width = document.body.clientWidth; show(); }

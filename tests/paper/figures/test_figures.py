@@ -193,7 +193,7 @@ def test_letters_are_clear_of_curves_and_of_one_another(number):
 
     figure = si.figure(number)
     figure.canvas.draw()
-    for axes in figure.axes:
+    for axes in (axes for axes in figure.axes if axes.lines):  # others hold a legend
         texts = [text for text in axes.texts if text.get_text()]
         for text in texts:
             text.get_window_extent()  # an annotation moves to its place when it is asked for its extent

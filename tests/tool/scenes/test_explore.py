@@ -460,6 +460,8 @@ def test_by_night_it_is_dark(opened):
         browser.execute_async_script("setTimeout(arguments[0], 100)")
         assert browser.execute_script(ground) == "rgb(20, 24, 28)"
         assert browser.execute_script(line) == on_dark(PENS["jump"].color) != day[1]
+        strokes = "return [...document.querySelectorAll('#legend line')].map(line => line.getAttribute('stroke'))"
+        assert on_dark(PENS["jump"].color) in browser.execute_script(strokes)
     finally:
         browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
 
