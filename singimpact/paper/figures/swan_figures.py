@@ -189,18 +189,19 @@ def _views(
     steep = ("shadow", "Z")  # these leave the magnified panel: their letters stand in the whole one
     plain = [line if line.pen in steep else replace(line, label="") for line in lines]
     lines = [replace(line, label="") if line.pen in steep else line for line in lines]
-    lower = [region for region in regions if region.label]
+    (left, right), (low, high) = box(swan, -3.0, 3.0, -v / ZOOM, v / ZOOM)
+    frame = np.array([[left, low], [right, low], [right, high], [left, high], [left, low]])
     return [
         Panel(
             box(swan, -4.2, 4.2, -v, v),
             title=title,
             y=y,
-            lines=plain,
+            lines=[*plain, Line(frame, "hidden", "frame", words="part that is magnified below")],
             dots=far,
-            regions=[Region(curve.points, curve.tone, words=curve.words) for curve in lower],
+            regions=[Region(curve.points, curve.tone, words=curve.words) for curve in regions if curve.label],
         ),
         Panel(
-            box(swan, -3.0, 3.0, -v / ZOOM, v / ZOOM),
+            ((left, right), (low, high)),
             title=f"{title}, magnified",
             y=y,
             lines=lines,
