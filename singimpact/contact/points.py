@@ -16,7 +16,7 @@ from singimpact.algebra.isolated_zeros import isolate
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.precision import Ladder, balls_at, digits_at, for_user, kept_property
 from singimpact.contact.contact import acceleration
-from singimpact.inputs import InputError, checked_keywords, refuse
+from singimpact.inputs import InputError, checked_keywords, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.result import Result, Results
 
@@ -78,16 +78,10 @@ def enclosed(ball: Callable[[int], Any], digits: int) -> Certified:
     ------
     InputError : digits are not a whole number from 1 to MOST_DIGITS.
     """
-    for bits in Ladder(ceil(_checked(digits) * 3.33) + 32, 64 * (digits + 64)):
+    for bits in Ladder(ceil(whole("digits", digits, 1, MOST_DIGITS) * 3.33) + 32, 64 * (digits + 64)):
         if (number := as_certified(ball(bits), digits)) is not None:
             return number
     raise ArithmeticError(f"{digits} digits are not reached with {bits} bits")
-
-
-def _checked(digits: Any) -> int:
-    if isinstance(digits, bool) or not isinstance(digits, int) or not 1 <= digits <= MOST_DIGITS:
-        raise refuse("digits", digits, f"a whole number from 1 to {MOST_DIGITS}")
-    return digits
 
 
 class TangencyPoints(Results, tuple[TangencyPoint, ...]):
@@ -133,7 +127,7 @@ def tangency_points(osc: Oscillator, digits: int = 30) -> TangencyPoints:
     (('foliation', 'gamma'), [0.633052, 2.508541])
     """
     points = TangencyPoints(_points(osc))
-    points.digits = _checked(digits)
+    points.digits = whole("digits", digits, 1, MOST_DIGITS)
     return points
 
 

@@ -16,7 +16,7 @@ from singimpact.algebra.numbers import as_fraction, constant
 from singimpact.algebra.precision import balls_at
 from singimpact.algebra.univariate import real_roots
 from singimpact.contact.contact import contact_order
-from singimpact.inputs import InputError, checked_keywords, refuse
+from singimpact.inputs import InputError, checked_keywords, refuse, whole
 from singimpact.result import Result, columns_of, in_words
 
 GUARD_BITS = 32  # beside the digits asked for; the loop adds more when a radius is still too large
@@ -99,7 +99,7 @@ def tangency(r: Any, digits: int = 50) -> TangencyFixedPoints:
     >>> print(tangency("1/2", digits=20).m3)
     1.1604422497237431884
     """
-    rate, precision = _restitution(r), _digits(digits)
+    rate, precision = _restitution(r), whole("digits", digits, 1, MOST_DIGITS)
 
     def enclosures(balls: Balls) -> dict[str, Any]:
         half = Fraction(1, 2)
@@ -124,7 +124,7 @@ def swan(r: Any, digits: int = 50) -> SwanFixedPoints:
     >>> print(swan("0.5", digits=20).m_star)
     -0.25629759628453099805
     """
-    rate, precision = _restitution(r), _digits(digits)
+    rate, precision = _restitution(r), whole("digits", digits, 1, MOST_DIGITS)
 
     def enclosures(balls: Balls) -> dict[str, Any]:
         found = _multipliers(2, rate, balls)
@@ -145,7 +145,7 @@ def multipliers(at: str | int, r: Any, digits: int = 50) -> Multipliers:
     >>> print(multipliers(3, "1/2", digits=20).lambda_)
     0.79433819166467074201
     """
-    j, rate, precision = contact_order(at), _restitution(r), _digits(digits)
+    j, rate, precision = contact_order(at), _restitution(r), whole("digits", digits, 1, MOST_DIGITS)
     if not j:
         raise refuse("at", at, "a contact order 1..12: at a regular point lambda is r")
     return Multipliers(**_certified(lambda balls: _multipliers(j, rate, balls), precision))
@@ -168,12 +168,6 @@ def _restitution(value: Any) -> Fraction:
     if rate is None or not LEAST <= rate < 1:
         raise refuse("r", value, accepted)
     return rate
-
-
-def _digits(value: Any) -> int:
-    if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= MOST_DIGITS:
-        raise refuse("digits", value, f"a whole number from 1 to {MOST_DIGITS}")
-    return value
 
 
 @cache

@@ -16,7 +16,7 @@ from singimpact.algebra.jets import Jet
 from singimpact.algebra.rings import DOUBLES, EXACT
 from singimpact.algebra.univariate import precision_of
 from singimpact.contact.contact import Contact, contact_order, derivative_name
-from singimpact.inputs import InputError, checked_keywords, refuse
+from singimpact.inputs import InputError, checked_keywords, refuse, whole
 from singimpact.oscillator.model import require_smooth_rho
 from singimpact.oscillator.rho_series import TASK
 from singimpact.theory.completion import by_velocity, symbolic_completion
@@ -49,12 +49,6 @@ class OrderLimits:
 LIMITS = OrderLimits()
 TWO_DOUBLES = 34  # digits that two doubles hold
 DOUBLE = 20  # digits of which a double is the correct rounding, but for one in a thousand
-
-
-def _checked(name: str, value: Any, least: int, most: int) -> int:
-    if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
-        raise refuse(name, value, f"an integer from {least} to {most}")
-    return value
 
 
 def _lettered(model: Any, tau: Any, keep: Sequence[str], j: int) -> LetteredModel | None:
@@ -99,9 +93,9 @@ def v_c(
     j = contact_order(at)
     lettered = _lettered(model, tau, keep, j)
     if lettered is not None or model is None:
-        _checked("order", order, 1, LIMITS.sheet)
+        order = whole("order", order, 1, LIMITS.sheet)
         return _symbolic_v_c(j, order) if lettered is None else _long(sheet(lettered.contact(order), order).v)
-    _checked("order", order, 1, LIMITS.sheet_numbers)
+    order = whole("order", order, 1, LIMITS.sheet_numbers)
     where = place(model, j, tau)
     exact = exact_contact(where, order)
     if exact is not None:
@@ -155,7 +149,7 @@ def v_c_on_arrays(
     [0.306, 0.036]
     """
     j = contact_order(at)
-    _checked("order", order, 1, LIMITS.sheet_numbers)
+    order = whole("order", order, 1, LIMITS.sheet_numbers)
     where = place(model, j, tau)
     exact = exact_contact(where, order)
     if exact is not None and exact.ring is EXACT:
@@ -255,8 +249,8 @@ def chatter_limit(
     """
     lettered = _lettered(model, tau, keep, 0)
     if lettered is not None or model is None:
-        return _with_letters("v", order, _symbolic_chatter(_checked("order", order, 1, LIMITS.completion)), lettered)
-    _checked("order", order, 1, LIMITS.completion_numbers)
+        return _with_letters("v", order, _symbolic_chatter(whole("order", order, 1, LIMITS.completion)), lettered)
+    order = whole("order", order, 1, LIMITS.completion_numbers)
     if tau is None:
         raise InputError("tau is needed: give the time at which the first flight starts")
     where = place(model, 0, tau)
@@ -307,13 +301,13 @@ def _with_letters(
 
 def _curve_series(name: str, order: int, j: int, model: Any, tau: Any, digits: int, keep: Sequence[str]) -> PowerSeries:
     least = j + 1 if name == "graph" else 1
-    _checked("order", order, least, LIMITS.curve_numbers)
+    order = whole("order", order, least, LIMITS.curve_numbers)
     top = order if name == "graph" else order + j
     lettered = _lettered(model, tau, keep, j)
     if lettered is not None or model is None:
-        _checked("order", order, least, LIMITS.curve - (name == "motion") * j)
+        order = whole("order", order, least, LIMITS.curve - (name == "motion") * j)
         return _with_letters("sigma", order, _symbolic_part(name, j, top), lettered)
-    _checked("order", order, least, LIMITS.curve_numbers)
+    order = whole("order", order, least, LIMITS.curve_numbers)
     where = ending_gamma(place(model, j, tau)) if j else place(model, j, tau)
     rough = getattr(curve_at(where, top + TRUST.further, DOUBLES), name)
     further = {n: abs(float(value)) for n, value in rough.items() if n > order}
@@ -351,7 +345,7 @@ def arc_in_numbers(order: int, j: int, model: Any, tau: Any = None) -> tuple[Pow
     >>> round(graph[3], 15), round(motion[1], 15)
     (-0.067753033879207, 0.660442249723743)
     """
-    _checked("order", order, j + 1, LIMITS.curve_numbers)
+    order = whole("order", order, j + 1, LIMITS.curve_numbers)
     where = ending_gamma(place(model, j, tau)) if j else place(model, j, tau)
     rough = curve_at(where, order + j + TRUST.further, DOUBLES)
 

@@ -20,7 +20,7 @@ from singimpact.algebra.polynomials import Exponents
 from singimpact.algebra.rings import EXACT, SymbolRing
 from singimpact.contact.contact import Contact, contact_order, derivative_name
 from singimpact.germs.germ_forms import NormalForm, normal_form as reduced
-from singimpact.inputs import InputError, checked_keywords, refuse
+from singimpact.inputs import InputError, checked_keywords, refuse, whole
 from singimpact.theory.contact_points import exact_contact, place
 from singimpact.theory.digits import sympy_digits, with_digits
 from singimpact.theory.gamma_in_symbols import length_weight
@@ -178,8 +178,7 @@ def normal_form(
     if name == "tangency" and contact_order(at) != 1:
         raise refuse("at", at, "'tangency' or 'cusp': where p or phi has a normal form")
     most = HIGHEST[name] if model is None else HIGHEST_NUMBERS
-    if isinstance(order, bool) or not isinstance(order, int) or not 3 <= order <= most:
-        raise refuse("order", order, f"an integer from 3 to {most}")
+    order = whole("order", order, 3, most)
     if model is not None:
         if name == "cusp":
             raise InputError("at = 'cusp' takes no model: the cusps of a model are among its singular points")

@@ -146,7 +146,7 @@ def test_forms_with_symbols():
     ("ask", "told"),
     [
         ({"order": 2}, "order = 2 is not accepted"),
-        ({"order": 13}, "an integer from 3 to 12"),
+        ({"order": 13}, "a whole number from 3 to 12"),
         ({"at": "swan"}, "'tangency' or 'cusp'"),
         ({"at": "cusp", "model": si.linear(2, "0.3", "0.5")}, "takes no model"),
         ({"tau": 1}, "a model too"),
