@@ -17,5 +17,4 @@ scene.draw(axes)
 plt.show()
 
 # %%
-# Launch velocities above gamma (thick) escape the chatter; those below come to rest. Each thin curve leads to one point
-# of rest.
+# Launches above gamma (pink) escape the chatter; those below come to rest. Each thin curve leads to one point of rest.

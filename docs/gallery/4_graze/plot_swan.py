@@ -21,4 +21,5 @@ for clearance, panel in zip(("0.6", "0.7", "0.8"), axes):
 plt.show()
 
 # %%
-# The discontinuities (dashed) shrink as the swan comes near. Above gamma (thick) a mass escapes the chatter.
+# Below gamma (pink) a mass comes to rest; each blue curve leads to one point of rest. At the black curve the impact map
+# jumps. The phases at which the force lifts the mass off, between the two families of blue curves, shrink to a point.
