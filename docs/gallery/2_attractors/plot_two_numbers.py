@@ -29,5 +29,5 @@ axes.set(xlabel="frequency $\\omega$ of the force", ylabel="clearance $c$")
 plt.show()
 
 # %%
-# Red: chaos. Blue: periodic motion, the darker the faster an orbit settles on it. White: between the two, or a mass that
-# comes to rest again and again.
+# Red: chaos. Blue: periodic motion, the darker the faster an orbit settles on it. White: an exponent near
+# zero, or a mass that comes to rest again and again.
