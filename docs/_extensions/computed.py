@@ -22,54 +22,25 @@ def errata() -> str:
 
 
 def claims() -> str:
-    """Every claim with its verdict."""
+    """Every claim with its formula and its verdict."""
+    from sections import claims_page
+
     import singimpact as si
 
-    found = si.verify()
-    rows = [f"| `{v.id}` | {v.section} | {v.title} | {v.kind}{_worth(v)} |" for v in found]
-    head = ["# All claims", "", "| claim | section | what it says | verdict |", "|---|---|---|---|"]
-    return "\n".join([*head, *rows, ""])
+    return claims_page(si.verify())
 
 
 def graph(place: Path) -> str:
-    """Which claims rest on which, as a picture and as a table; a page for who wants to know what falls with a claim."""
+    """The sections of the paper as nodes, and beside the page all claims as one picture."""
+    from sections import graph_page
+
     import singimpact as si
     from singimpact.paper.claims import INDEX
-    from singimpact.paper.claims.index import as_svg, dependants
+    from singimpact.paper.claims.index import as_svg
 
     found = si.verify()
     put(place / "graph.svg", as_svg(INDEX, {v.id: v.in_words if v.corrected else v.worth for v in found}))
-    above = {v.id: [name for name, entry in INDEX.items() if v.id in entry.rests_on] for v in found}
-    rows = [
-        f"| `{v.id}` | {v.title} | {v.kind} | {v.effective} | {', '.join(v.effective_modulo) or '-'} "
-        f"| {_ids(v.rests_on)} | {_ids(above[v.id])} | {len(dependants(INDEX, v.id))} |"
-        for v in found
-    ]
-    head = "| claim | what it says | verdict | effective | modulo | rests on | used by | falls |"
-    told = [
-        "# What rests on what",
-        "The verdict is that of the claim's own argument; the effective verdict is the weakest along all that it rests "
-        "on, and the one to quote. *Modulo* are the theorems that this argument and those below it use; they are not "
-        "proved here. The last column is the number of claims that fall with it, directly or not.",
-        "A column of the picture is one step further from the equation of motion, an arrow leads from a claim to one "
-        "that it rests on, colours are verdicts: green proved, teal proved modulo a theorem, pale green proved in the "
-        "model, yellow certified, blue supported, orange corrected, grey cited. [The picture by itself](graph.svg).",
-        "![Claims as boxes in columns, with arrows between those that rest on one another](graph.svg)",
-        "\n".join([head, "|---" * head.count(" | ") + "|---|", *rows]),
-    ]
-    return "\n\n".join(told) + "\n"
-
-
-def _ids(names: Any) -> str:
-    return " ".join(f"`{name}`" for name in names) or "none"
-
-
-def _worth(verdict: Any) -> str:
-    from singimpact.paper.claims.claim import told
-
-    if verdict.corrected_kind:
-        return f" ({told(verdict.corrected_kind, verdict.modulo)})"
-    return told(verdict.kind, verdict.modulo).removeprefix(verdict.kind)
+    return graph_page(found)
 
 
 def commands() -> str:

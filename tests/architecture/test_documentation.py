@@ -35,7 +35,7 @@ def test_pages_are_there(site, clone):
     ideas = ["index", "impact_surface", "regular", "tangency", "swan", "unfolding", "one_structure"]
     ideas += ["branches", "gamma_proved", "manifolds"]
     computed = ["errata", "claims", "commands", "figures"]
-    pages += ["changelog", "citation", "bibliography", "faq", "models"]
+    pages += ["changelog", "citation", "bibliography", "faq", "models", "stability"]
     pages += [f"reference/{path.stem}" for path in (clone / "docs" / "reference").glob("*.md")]
     pages += [f"computed/notebooks/{path.stem}" for path in (clone / "notebooks").glob("*.ipynb")]
     pages += [f"explanation/{name}" for name in ideas] + [f"computed/{name}" for name in computed]
@@ -160,6 +160,31 @@ def test_public_names_are_in_the_reference(site):
     things = [name for name in si._HOMES if not inspect.ismodule(getattr(si, name))]
     missing = [name for name in things if not re.search(rf'id="[\w.]*\b{name}"', told)]
     assert missing == []
+
+
+@pytest.mark.slow
+def test_each_claim_has_its_formula_and_each_section_is_a_node(site):
+    from singimpact.paper import INDEX
+
+    told = (site / "computed" / "claims.html").read_text()
+    graph = (site / "computed" / "graph.html").read_text()
+    anchors = {name: "at-" + re.sub(r"[^\w]+", "-", name).strip("-") for name in INDEX}
+    assert len(set(anchors.values())) == len(INDEX) == 147
+    assert [name for name, at in anchors.items() if f'id="{at}"' not in told] == []
+    assert told.count('class="math notranslate') >= 147 + 40
+    sections = {entry.section for entry in INDEX.values()}
+    assert len(re.findall(r"<a href=\"#at-[^>]*onclick", graph)) == graph.count("<details") == len(sections)
+    linked = re.findall(r'href="claims\.html#([\w-]+)"', graph)
+    assert set(anchors.values()) == set(linked)
+
+
+@pytest.mark.slow
+def test_a_click_on_a_section_opens_its_claims(address, browser):
+    browser.get(f"{address}/computed/graph.html")
+    opened = "return [...document.querySelectorAll('details')].map((each) => each.open)"
+    assert not any(browser.execute_script(opened))
+    browser.execute_script("document.querySelectorAll('.section-graph a')[2].dispatchEvent(new MouseEvent('click'))")
+    assert [n for n, is_open in enumerate(browser.execute_script(opened)) if is_open] == [2]
 
 
 class Quiet(http.server.SimpleHTTPRequestHandler):
