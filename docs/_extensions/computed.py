@@ -176,7 +176,7 @@ def live(name: str, place: Path) -> None:
     """The interactive page of a named model."""
     import singimpact as si
 
-    si.models[name]().explore(steps=21).save(place / f"{name}.html")
+    si.models[name]().explore(points=21).save(place / f"{name}.html")
 
 
 def build(app: Any) -> None:
