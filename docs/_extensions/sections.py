@@ -133,8 +133,8 @@ def picture(by_section: Mapping[str, Sequence[Any]], arcs: Mapping[tuple[str, st
         widths = [BAR * count / len(kin) for count in colours.values()]
         starts = [0.0, *accumulate(widths)]
         bar = "".join(
-            f'<rect x="{20 + start:.1f}" y="{y + 3}" width="{width:.1f}" height="9" fill="{colour}" stroke="#888" '
-            f'stroke-width="0.5"/>'
+            f'<rect x="{20 + start:.1f}" y="{y + 3}" width="{width:.1f}" height="9" class="verdicts" '
+            f'style="fill:{colour}"/>'
             for start, width, colour in zip(starts, widths, colours, strict=False)
         )
         opened = f"document.getElementById('{anchor(section)}').open = true"

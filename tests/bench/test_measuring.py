@@ -6,6 +6,7 @@ import time
 
 import numpy as np
 import pytest
+from matplotlib.colors import to_hex
 
 from singimpact.bench import (
     EPSILON,
@@ -162,7 +163,7 @@ def test_picture_shows_every_method_and_the_missed_ones_hollow():
     found = Measured("group", [row for case in cases for row in measure("group", case, EFFORT)])
     judged, grown, timed = plotted(found).axes
     assert [axes.get_title() for axes in (judged, grown)] == ["judged", "grown"]
-    hollow = [line for line in judged.lines if line.get_markerfacecolor() == "white"]
+    hollow = [line for line in judged.lines if to_hex(line.get_markerfacecolor()) == "#ffffff" != line.get_color()]
     assert [(line.get_xdata()[0], line.get_ydata()[0]) for line in hollow] == [(1.0, 2e6)]
     assert len({(line.get_color(), line.get_marker()) for line in judged.lines}) == 2
     assert grown.lines[0].get_xdata().tolist() == [1, 2]

@@ -102,7 +102,7 @@ def test_the_surface_is_drawn():
 
 
 def test_the_page_is_saved(tmp_path):
-    page = si.explore(UNIVERSAL, steps=2)
+    page = si.explore(UNIVERSAL, points=2)
     page.save(tmp_path / "page.html")
     assert (tmp_path / "page.html").read_text() == page.html
     assert "srcdoc" in page._repr_html_()
@@ -126,7 +126,7 @@ def test_the_page_is_saved(tmp_path):
         (lambda: si.transitions("x", between=(0, 1)), "osc = 'x' is not accepted: give an ImpactOscillator"),
         (lambda: si.grown_gamma("x"), "osc = 'x' is not accepted: give an ImpactOscillator"),
         (lambda: si.explore("x"), "osc = 'x' is not accepted: give an ImpactOscillator"),
-        (lambda: si.explore(OSC, steps=1), "steps = 1 is not accepted: give a whole number from 2 to 1001"),
+        (lambda: si.explore(OSC, points=1), "points = 1 is not accepted: give a whole number from 2 to 1001"),
         (lambda: si.plot(3), "thing to plot = 'int' is not accepted: give an orbit"),
     ],
 )

@@ -80,12 +80,19 @@ def duffing():
 
 
 def without(branch, *names: str):
-    return [(event.kind, event.parameter) for event in branch.events if event.kind not in names]
+    """Kinds and parameters, up to the rounding in which interpreted and compiled flights differ."""
+    return [
+        (event.kind, pytest.approx(event.parameter, rel=1e-14)) for event in branch.events if event.kind not in names
+    ]
+
+
+def bare(branch):
+    return [(event.kind, event.parameter) for event in branch.events]
 
 
 def test_other_events_are_as_without_it() -> None:
     plain, own = (si.branch(duffing(), "A", (0.25, 0.8), events=events) for events in ([], [half_speed, Slowest()]))
-    assert without(own, "half_speed", Slowest.name) == without(plain)
+    assert without(own, "half_speed", Slowest.name) == bare(plain)
     assert {"half_speed", Slowest.name} <= {event.kind for event in own.events}
     assert own.parameter[own.at_event].size == plain.parameter[plain.at_event].size + len(own.events) - len(
         plain.events
@@ -223,4 +230,4 @@ def test_values_of_own_functions_are_not_taken_from_the_cache(tmp_path, monkeypa
     for branch, value in ((first, 0.5), (second, 0.6)):
         (event,) = [event for event in branch.events if event.kind == "speed"]
         assert float(event.orbit.v[0]) == pytest.approx(value, abs=1e-11)
-    assert without(second, "speed") == without(plain) == without(first, "speed")
+    assert without(second, "speed") == bare(plain) == without(first, "speed")
