@@ -130,7 +130,7 @@ class Machine:
                 line.show(0, None, "the model's flights are compiled")
                 if silent and time.monotonic() - begun > SETTINGS.silent:
                     silent = False
-                    tell(f"the model's flights are compiled, once {self._reason}")
+                    tell(f"the model's flights are compiled, in about {max(self.price, 2):.0f} s, once {self._reason}")
         if errors:
             raise errors[0]
         cache.keep(self.place(name), codes[0])

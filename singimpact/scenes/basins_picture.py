@@ -68,7 +68,7 @@ def _painted(basins: Basins, layers: list[tuple[Any, str]], colors: list[str], a
         patches.append(Patch(facecolor=color, edgecolor=GREY, label=label))
     half_tau, half_v = np.diff(basins.tau[:2])[0] / 2, np.diff(basins.v[:2])[0] / 2
     box = (basins.tau[0] - half_tau, basins.tau[-1] + half_tau, basins.v[0] - half_v, basins.v[-1] + half_v)
-    axes.imshow(image, origin="lower", extent=box, aspect="auto", interpolation="nearest")
+    axes.imshow(image, origin="lower", extent=box, aspect="auto", interpolation="nearest", gid="basins")
     axes.set(xlabel=r"launch phase $\tau$", ylabel="launch velocity $v$")
     axes.legend(
         handles=patches[:12], loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=3, frameon=False, fontsize="small"

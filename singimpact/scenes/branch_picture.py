@@ -79,7 +79,7 @@ def draw_branches(branches: Sequence[Branch], axes: Any, height: str = "v") -> A
         _limits(axes, drawn, shown)
         axes.set(xlabel=LETTERS.get(names[0], names[0]), ylabel=HEIGHTS[shown])
         if shown != "phase":
-            axes.axhline(0, color=BLACK, linewidth=0.6, zorder=1)
+            axes.axhline(0, color=BLACK, linewidth=0.6, zorder=1, gid="no impact")
     marks = [mark for line in drawn for mark in line.marks()]
     return _legend(axes, drawn, [name for name in LINES if name in kinds], _draw_marks(axes, marks))
 
@@ -156,9 +156,8 @@ class _Drawn:
                 numbers = self.number[piece]
                 if self.shown == "phase":
                     numbers, heights = _torn(numbers, heights)
-                axes.plot(
-                    numbers, heights, color=color, linestyle=style, linewidth=width, zorder=3 + (style == "solid")
-                )
+                look = {"color": color, "linestyle": style, "linewidth": width, "zorder": 3 + (style == "solid")}
+                axes.plot(numbers, heights, **look, gid=f"branch, {steps[first]}")
             first = i
 
     def _next(self, i: int) -> str:
@@ -208,7 +207,7 @@ def _limits(axes: Any, drawn: list[_Drawn], shown: str) -> None:
 def _draw_marks(axes: Any, marks: list[Any]) -> set[str]:
     """Markers with their names, if all of these have clear places and are few; otherwise the names for the legend."""
     for (number, height, kind), _ in marks:
-        axes.plot(number, height, kind_of(kind).marker, **OPEN, markersize=SETTINGS.mark, zorder=6)
+        axes.plot(number, height, kind_of(kind).marker, **OPEN, markersize=SETTINGS.mark, zorder=6, gid=kind)
     names = [(number, height, name) for (number, height, _), name in marks if name]
     if len(names) > SETTINGS.named:
         return {name for _, _, name in names}
@@ -256,7 +255,7 @@ def draw_event_curves(curves: Sequence[EventCurve], axes: Any) -> Any:
             joined = chosen | np.append(chosen[1:], False) | np.insert(chosen[:-1], 0, False) if not seen else chosen
             points = np.where(joined[:, None], curve.parameters, np.nan)
             line = pen.line() if seen else {"color": pen.color, "linestyle": DOTS, "linewidth": 1.3}
-            axes.plot(*points.T, **line, zorder=4 if seen else 3)
+            axes.plot(*points.T, **line, zorder=4 if seen else 3, gid=name)
     if not all(curve.visible.all() for curve in curves):
         entries[WORDS["virtual"]] = Line2D([], [], color=BLACK, linestyle=DOTS, linewidth=1.3)
     if fresh:
@@ -265,7 +264,7 @@ def draw_event_curves(curves: Sequence[EventCurve], axes: Any) -> Any:
         axes.margins(SETTINGS.space)
     marked = _apart([(*point.parameters, point.kind) for curve in curves for point in curve.special], axes)
     for x, y, _ in marked:
-        axes.plot(x, y, "D", **OPEN, markersize=5, zorder=6)
+        axes.plot(x, y, "D", **OPEN, markersize=5, zorder=6, gid="special point")
     place_labels(axes, marked)
     return legend_below(axes, entries, min(4, len(entries)))
 

@@ -66,7 +66,8 @@ def plot(
     sheet : whether a figure of several axes is made, which are returned: of an orbit its last part, the phase portrait
         and all velocities; of a diagram, or a list of one and of branches, velocities and phases.
     dark : light lines on a dark ground, in the whole figure.
-    style : properties of matplotlib for all lines and points that are drawn, such as color, linewidth or alpha.
+    style : properties of matplotlib for all lines and points that are drawn, such as color, linewidth or alpha. Each
+        has a name, its label where a legend shows it and its gid elsewhere.
 
     Examples
     --------

@@ -59,7 +59,7 @@ def draw_manifolds(manifolds: Sequence[Manifold], axes: Any) -> Any:
         entries.setdefault(f"${manifold.name}$ of the {saddle}", Line2D([], [], **line))
         for turn in _turns(limits[0], periods[1], fresh):
             for piece in manifold.pieces:
-                axes.plot(piece.points[:, 0] + turn, piece.points[:, 1], **line, zorder=4)
+                axes.plot(piece.points[:, 0] + turn, piece.points[:, 1], **line, zorder=4, gid=manifold.name)
             _saddle(manifold, turn, axes)
             _cuts(manifold, turn, axes, entries)
     entries["saddle"] = legend_mark("s", SETTINGS.saddle)
@@ -78,7 +78,8 @@ def draw_crossings(crossings: Crossings, axes: Any) -> Any:
     filled = {"color": color, "markerfacecolor": color}
     kind = crossings[0].kind if crossings else "homoclinic"
     for crossing in crossings:
-        axes.plot(crossing.tau, crossing.v, "o", **filled, markersize=SETTINGS.crossing, markeredgewidth=0, zorder=6)
+        dot = {"markersize": SETTINGS.crossing, "markeredgewidth": 0, "zorder": 6, "gid": f"{kind} point"}
+        axes.plot(crossing.tau, crossing.v, "o", **filled, **dot)
     for crossing in crossings[: SETTINGS.orbits]:
         axes.plot(*crossing.states.T, "o", **hollow, markersize=1.8 * SETTINGS.crossing, zorder=7)
         entries[f"impacts of the first {kind} orbit"] = legend_mark("o", 1.8 * SETTINGS.crossing, **hollow)
@@ -149,7 +150,7 @@ def _saddle(found: Manifold, turn: float, axes: Any) -> None:
     period = found.window.x[1]
     tau = np.mod(np.asarray(found.saddle.tau, dtype=float), period) + turn
     v = np.asarray(found.saddle.v, dtype=float)
-    axes.plot(tau, v, "s", **OPEN, markersize=SETTINGS.saddle, zorder=6)
+    axes.plot(tau, v, "s", **OPEN, markersize=SETTINGS.saddle, zorder=6, gid="saddle")
 
 
 def _cuts(found: Manifold, turn: float, axes: Any, entries: dict[str, Any]) -> None:
@@ -157,7 +158,7 @@ def _cuts(found: Manifold, turn: float, axes: Any, entries: dict[str, Any]) -> N
     if not found.cuts or len(found.cuts) > SETTINGS.marked:
         return
     places = np.array([(cut.tau + turn, cut.v) for cut in found.cuts])
-    axes.plot(*places.T, "D", **OPEN, markersize=SETTINGS.cut, zorder=5)
+    axes.plot(*places.T, "D", **OPEN, markersize=SETTINGS.cut, zorder=5, gid="cut by a graze")
     entries["cut by a graze"] = legend_mark("D", SETTINGS.cut)
 
 

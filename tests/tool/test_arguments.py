@@ -138,3 +138,17 @@ def test_a_plastic_impact_is_refused_with_what_there_is():
     with pytest.raises(InputError) as refused:
         si.linear(2, 0, "-0.1")
     assert "stays on the wall" not in str(refused.value)
+
+
+def test_what_is_drawn_has_a_name():
+    """A label where a legend shows it, else a gid, by which a user finds an artist again."""
+    osc = si.linear("2.8", "0.1", "0.8", amplitude=-1)
+    saddle = next(orbit for orbit in osc.periodic(3, 3) if not orbit.stable)
+    branch = si.branch(osc.periodic(1, 1)[0], "clearance", (0, 0.2))
+    things = [osc.orbit(0.3, 0.5, 20), osc.bifurcation("clearance", (0, 0.1), points=5), si.basins(osc, size=20)]
+    for thing in [*things, branch, si.manifold(saddle, v=1)]:
+        axes = si.plot(thing)
+        artists = [*axes.lines, *axes.collections, *axes.images]
+        assert artists
+        assert [a for a in artists if a.get_gid() is None and a.get_label().startswith("_")] == [], type(thing).__name__
+    assert {line.get_gid() for line in si.plot(branch).lines} > {"branch, stable"}

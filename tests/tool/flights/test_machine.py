@@ -244,7 +244,7 @@ def test_kernels_without_object_code_are_compiled_when_their_flights_have_cost_a
     other.interpreted(2.0, "linear_entry")
     assert other.entry("linear_entry")
     assert other.place("linear_entry").is_file()
-    assert "compiled, once a cache: there is no object code of the kernels" in capsys.readouterr().err
+    assert "compiled, in about 30 s, once a cache: there is no object code of the kernels" in capsys.readouterr().err
     other.compile_here("linear_entry")
     machine.Machine(other.emitted).compile_here("linear_entry")
     assert calls == ["linear_entry"]
