@@ -21,6 +21,13 @@ def test_version_is_that_of_the_project(clone):
     assert si.__version__.count(".") == 2
 
 
+def test_the_last_version_of_the_change_log_is_this_one_and_is_read_in_two_minutes(clone):
+    first, second = (clone / "CHANGELOG.md").read_text(encoding="utf-8").split("\n## ")[1:3]
+    last = second if first.startswith("Unreleased") else first
+    assert last.splitlines()[0] == si.__version__
+    assert len(last.split()) < 500
+
+
 @pytest.mark.parametrize(
     ("wrong", "right"), [("ImpactOscilator", "ImpactOscillator"), ("liner", "linear"), ("verfy", "verify")]
 )
