@@ -121,7 +121,9 @@ def traced(function: Callable[..., Any], names: Sequence[str], what: str) -> Exp
     x + b*sin(x) - 0.1*xdot**3
     """
     try:
-        accepted = inspect.signature(function).parameters.values()
+        # functions of numpy have a signature in newer versions alone; they take as much as these two
+        likened = (math.cos, math.atan2)[function.nin - 1] if isinstance(function, np.ufunc) else function
+        accepted = inspect.signature(likened).parameters.values()
         takes = [item for item in accepted if item.default is item.empty or item.name in names]
         if len(takes) > len(names) or any(item.kind in (item.VAR_POSITIONAL, item.VAR_KEYWORD) for item in takes):
             raise InputError(f"give a function of {', '.join(names)}, or of some of them")
