@@ -23,7 +23,7 @@ def errata() -> str:
 
 def claims() -> str:
     """Every claim with its formula and its verdict."""
-    from sections import claims_page
+    from claim_pages import claims_page
 
     import singimpact as si
 
@@ -32,7 +32,7 @@ def claims() -> str:
 
 def graph(place: Path) -> str:
     """The sections of the paper as nodes, and beside the page all claims as one picture."""
-    from sections import graph_page
+    from claim_pages import graph_page
 
     import singimpact as si
     from singimpact.paper.claims import INDEX

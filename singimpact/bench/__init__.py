@@ -18,7 +18,7 @@ _FILES = {
     "measuring": (
         "Aim Case Counted EPSILON Effort FULL Measured Method QUICK Timed condition cpu_seconds measure relative_error"
     ),
-    "page": "ABOUT COMMAND READING STRESS_ABOUT STRESS_COMMAND digest_of recorded stress_page table timed_digest",
+    "page": "ABOUT COMMAND READING STRESS_ABOUT STRESS_COMMAND digest_of recorded stress_page timed_digest",
     "peers.fixed_steps": "flights numbers orbit",
     "problems": "Problem states values",
     "report": "exponents fitted in_words plotted reached tables",

@@ -29,7 +29,7 @@ class Shown(Protocol):
     """The fields of a scene that its layers read."""
 
     @property
-    def model(self) -> Oscillator: ...
+    def osc(self) -> Oscillator: ...
     @property
     def tau(self) -> tuple[float, float]: ...
     @property
@@ -91,7 +91,7 @@ class Results:
     def surface(self) -> ImpactSurface:
         """V_c' of the scene; what is known of it is not flown again."""
         scene = self.scene
-        return ImpactSurface(scene.model, scene.tau, scene.times, 1 / scene.pixels)
+        return ImpactSurface(scene.osc, scene.tau, scene.times, 1 / scene.pixels)
 
     @property
     def states(self) -> Window:
@@ -132,11 +132,11 @@ def _visible(results: Results) -> list[Curve]:
 
 
 def _gamma(results: Results) -> list[Curve]:
-    return gammas_within(results.scene.model, results.states)
+    return gammas_within(results.scene.osc, results.states)
 
 
 def _manifolds(results: Results, feet: Iterable[Any]) -> list[Curve]:
-    return [curve for foot in feet for curve in stable_manifold(results.scene.model, results.states, foot)]
+    return [curve for foot in feet for curve in stable_manifold(results.scene.osc, results.states, foot)]
 
 
 def _leaves(results: Results) -> list[Curve]:
@@ -144,12 +144,12 @@ def _leaves(results: Results) -> list[Curve]:
     low, high = results.scene.tau
     count = results.scene.leaves
     feet = low + (np.arange(count) + 0.5) * (high - low) / count
-    pressed = feet[acceleration(results.scene.model, feet) < 0]
+    pressed = feet[acceleration(results.scene.osc, feet) < 0]
     return _manifolds(results, map(repr, pressed.tolist()))
 
 
 def _orbits(results: Results) -> list[Curve]:
-    flown = [orbit(results.scene.model, tau, v, results.scene.impacts) for tau, v in results.scene.orbits]
+    flown = [orbit(results.scene.osc, tau, v, results.scene.impacts) for tau, v in results.scene.orbits]
     made = [np.stack([np.asarray(each.tau), np.asarray(each.v)], axis=1) for each in flown]
     return [Curve("orbit", points, STATES) for points in made]
 

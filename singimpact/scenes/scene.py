@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.numbers import as_float, constant
-from singimpact.inputs import InputError, refuse, require_known, shown, unknown
+from singimpact.inputs import InputError, checked_methods, refuse, require_known, shown, unknown
 from singimpact.oscillator.model import FIELDS, Oscillator, read_fields
 from singimpact.scenes.layer_data import Results
 from singimpact.scenes.style import BLACK, GREY, PENS, WHITE
@@ -79,13 +79,14 @@ LAYERS: dict[str, Layer] = {
 }
 
 
+@checked_methods
 @dataclass(frozen=True)
 class Scene:
     """A picture, before it is drawn.
 
     Parameters
     ----------
-    model : the oscillator. layers : their names, all in one plane: horizon, zero-set, visible, shadow in (tau, t);
+    osc : the oscillator. layers : their names, all in one plane: horizon, zero-set, visible, shadow in (tau, t);
         outline, discontinuities, gamma, stable-manifolds, foliation, orbits in (tau, v).
     tau : ends of the window. t : of either sign; flights of this length are looked at. v : ends, the lower one 0.
     pixels : width of the picture; curves are computed as exactly as it can show.
@@ -99,7 +100,7 @@ class Scene:
     ([True], ['lines', 'zero-set'])
     """
 
-    model: Oscillator
+    osc: Oscillator
     layers: tuple[str, ...] = ()
     tau: Any = (-1, 1)
     t: Any = None
@@ -112,10 +113,11 @@ class Scene:
     impacts: int = 50
     marks: tuple[tuple[str, float, float], ...] = ()
     plane: tuple[str, str] = field(init=False, default=STATES)
+    model = property(lambda self: self.osc)
 
     def __post_init__(self) -> None:
-        if not isinstance(self.model, Oscillator):
-            raise refuse("model", self.model, "an ImpactOscillator")
+        if not isinstance(self.osc, Oscillator):
+            raise refuse("osc", self.osc, "an ImpactOscillator")
         if isinstance(self.layers, str) or not isinstance(self.layers, Iterable):
             raise refuse("layers", self.layers, "a list of names of layers")
         if (
@@ -183,7 +185,7 @@ class Scene:
         require_known(f"key in scene file {shown(str(path))}:", fields, FILE_KEYS)
         if "model" not in fields or "tau" not in fields:
             raise InputError(f"scene file {shown(str(path))} has no {'model' if 'model' not in fields else 'tau'}")
-        fields["model"] = _model(fields["model"], Path(path))
+        fields["osc"] = _model(fields.pop("model"), Path(path))
         for key in ("layers", "feet", "orbits", "marks"):
             if not isinstance(fields.get(key, []), list):
                 raise refuse(key, fields[key], "a list")
@@ -206,7 +208,7 @@ class Scene:
 
     def depends(self, need: str) -> tuple[Any, ...]:
         """The values that the curves of a need depend on; a cached result is used where all are equal."""
-        ground = (self.model.to_dict(), self.tau, self.pixels)
+        ground = (self.osc.to_dict(), self.tau, self.pixels)
         more = {
             "gamma": (self.speeds,),
             "stable-manifolds": (self.speeds, list(map(str, self.feet))),

@@ -112,6 +112,10 @@ def test_a_figure_has_the_name_of_its_number():
         (lambda osc: si.explore(osc, steps=2), r"explore\(steps=...\) is explore\(points=...\) now"),
         (lambda osc: osc.explore(steps=2), r"explore\(steps=...\) is explore\(points=...\) now"),
         (lambda osc: si.ImpactSurface(model=osc, tau=(-1, 1), t=(0, 1)), r"ImpactSurface\(osc=...\) now"),
+        (
+            lambda osc: si.Scene(model=osc, layers=("gamma",), v=(0, 1)).model,
+            r"Scene\(model=...\) is Scene\(osc=...\) now",
+        ),
     ],
 )
 def test_an_old_name_of_an_argument_works_with_a_warning(call, told):
@@ -128,6 +132,7 @@ def test_old_names_are_no_longer_those_of_any_argument():
     studies = [si.explore, si.basins, si.bifurcation, si.classify, si.ImpactSurface, si.branch, si.animate, si.manifold]
     names = {name for study in studies for name in signature(study).parameters}
     assert not names & set(RENAMED)
+    assert RENAMED == {} or tuple(map(int, si.__version__.split(".")[:2])) < (1, 1)  # until when they are promised
     with pytest.raises(InputError, match="explore has no argument 'stepps': give osc, between, points"):
         si.explore(si.linear(2, "0.9", "0.5"), stepps=2)
 
@@ -152,3 +157,11 @@ def test_what_is_drawn_has_a_name():
         assert artists
         assert [a for a in artists if a.get_gid() is None and a.get_label().startswith("_")] == [], type(thing).__name__
     assert {line.get_gid() for line in si.plot(branch).lines} > {"branch, stable"}
+
+
+@pytest.mark.parametrize("name", [name for name in si.__all__ if name not in ("Status", "Cause", "InputError")])
+def test_every_public_callable_refuses_an_argument_that_it_does_not_take(name):
+    thing = getattr(si, name)
+    if callable(thing):
+        with pytest.raises(InputError):
+            thing(no_such_argument=1)

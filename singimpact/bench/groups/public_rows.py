@@ -20,7 +20,6 @@ from singimpact.bench.groups.orbit_rows import FIRST, orbit_case
 from singimpact.bench.measuring import NO_AIM, Case, Counted, Effort, Method
 from singimpact.bench.peers import fixed_steps
 
-SLOW = "v from 1e-8 to 1e-2"
 TWO_BASINS = si.linear("2.8", "0.1", "0.8", amplitude=-1)
 OVER = (-0.1, 0.25)  # clearances of the bifurcation diagram
 
@@ -30,7 +29,7 @@ def cases(effort: Effort) -> Iterator[Case]:
     maps = {
         "linear, a state a call": ("linear", "generic", 1),
         "linear, an array": ("linear", "generic", 0),
-        "linear, v from 1e-8 to 1e-2": ("linear", SLOW, 0),
+        "linear, v from 1e-8 to 1e-2": ("linear", "v from 1e-8 to 1e-2", 0),
         "Duffing, a state a call": ("duffing", "generic", 1),
         "Duffing, an array": ("duffing", "generic", 0),
     }

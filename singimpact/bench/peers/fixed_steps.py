@@ -14,8 +14,6 @@ from singimpact.bench.problems import Problem
 
 STEPS = 1000  # of a period
 LONGEST = 300  # periods after which a flight is given up
-FORCES = {"linear": (0.0, 0.0), "linear, chattering": (0.0, 0.0), "duffing": (0.1, 0.3)}
-"""Damping and cubic stiffness of x'' + d x' + x + k x^3 = amplitude cos(omega t)."""
 
 
 def _step(t: float, x: float, u: float, h: float, n: Array) -> tuple[float, float]:
@@ -75,8 +73,8 @@ orbit: Any = njit(_orbit)
 
 
 def numbers(family: str, omega: float, clearance: float, amplitude: float = 1.0) -> Array:
-    """The numbers of a model as the loops take them."""
-    return np.array([omega, clearance, *FORCES[family], amplitude])
+    """Numbers of x'' + d x' + x + k x^3 = amplitude cos(omega t) for the loops; d and k are 0 but for Duffing."""
+    return np.array([omega, clearance, *((0.1, 0.3) if family == "duffing" else (0.0, 0.0)), amplitude])
 
 
 def fly(problem: Problem) -> tuple[float, float]:

@@ -151,12 +151,12 @@ def test_a_scene_file(tmp_path):
         ({"orbits": (3,)}, "orbits = 3"),
         ({"marks": (("A", 1),)}, "marks"),
         ({"layers": "gamma"}, "layers = 'gamma'"),
-        ({"model": 3}, "model = 3"),
+        ({"osc": 3}, "osc = 3"),
     ],
 )
 def test_refusals(change, told):
     with pytest.raises(InputError, match=told):
-        Scene(**({"model": NEGATIVE, "layers": ("gamma",), "tau": (-1, 1), "v": (0, 1)} | change))
+        Scene(**({"osc": NEGATIVE, "layers": ("gamma",), "tau": (-1, 1), "v": (0, 1)} | change))
 
 
 @pytest.mark.parametrize(
