@@ -59,7 +59,7 @@ def test_a_window_is_named_by_what_moves():
      ({"layers": 5}, "layers")],
 )  # fmt: skip
 def test_a_scene_refuses_what_it_cannot_show(more, told):
-    fields = {"model": si.linear(2, "0.3", "0.5"), "layers": ["gamma"], "tau": (0, 3), "v": (0, 1)} | more
+    fields = {"osc": si.linear(2, "0.3", "0.5"), "layers": ["gamma"], "tau": (0, 3), "v": (0, 1)} | more
     with pytest.raises(InputError, match=told):
         si.Scene(**fields)
 
