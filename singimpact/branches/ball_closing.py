@@ -20,7 +20,7 @@ from singimpact.flights.enclosures.jet_flight import JetHit, jet_hit
 from singimpact.flights.enclosures.timed_flight import Arrival, timed_flight, touches_first
 from singimpact.flights.horizons import horizon_of
 from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.period import common_period
+from singimpact.oscillator.moving_number import period_over
 
 SPARE = 6
 """Digits of a flight beside those of the states."""
@@ -65,12 +65,10 @@ class Spans:
     def __init__(self, osc: Oscillator, k: int, over: str | None) -> None:
         assert osc.period is not None
         self.k, self.over = k, over
-        self.tree: Expression = osc.period
-        if over is not None and over in names_in(osc.g):
-            moving = common_period(osc.forcing((over,)))
-            if moving is None:
-                raise ArithmeticError(f"how the period depends on {over} is not known")
-            self.tree = moving
+        moving = osc.period if over is None else period_over(osc, (over,))
+        if moving is None:
+            raise ArithmeticError(f"how the period depends on {over} is not known")
+        self.tree: Expression = moving
 
     def at(self, value: Any, balls: Balls) -> tuple[Any, Any]:
         """k P and its derivative, where the number is a ball."""

@@ -189,8 +189,7 @@ class ClosingBoxes:
 
     def _force(self, t: Any, at: Met) -> Any:
         """x'' on the wall."""
-        f = self.equation.run("force", x=at.speed * 0, xdot=at.speed)[0]
-        return self.equation.run("forcing", t=t)[0] - f
+        return self.equation.acceleration(t, at.speed * 0, at.speed)
 
 
 def closed_boxes(

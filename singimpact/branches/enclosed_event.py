@@ -114,6 +114,8 @@ def enclosed_event(kind: str, orbit: PeriodicOrbit, over: str, parameter: float,
         speeds = np.delete(speeds, np.argmin(np.abs(speeds)))
     if speeds.size and speeds.min() < -SETTINGS.rounding * np.abs(speeds).max():
         return f"an impact has the velocity {speeds.min():.6g}"
+    if orbit.oscillator.parametric:
+        return f"f = {orbit.oscillator.f} depends on t: second derivatives of flights are enclosed for f in x and xdot"
     bits = ceil((digits + SETTINGS.most) * BITS_A_DIGIT) + 64
     with balls_at(bits):
         try:

@@ -16,7 +16,17 @@ from singimpact.branches.enclosed_event import EnclosedEvent
 from singimpact.branches.horseshoe import Horseshoe
 from singimpact.branches.krawczyk import EnclosedOrbit
 from singimpact.branches.orbits import PeriodicOrbit
-from singimpact.certificates.checker import KINDS, SCHEMA, SECONDS, TOUCHING, Refused, digest_of, read, sentence
+from singimpact.certificates.checker import (
+    IN_TIME,
+    KINDS,
+    SCHEMA,
+    SECONDS,
+    TOUCHING,
+    Refused,
+    digest_of,
+    read,
+    sentence,
+)
 from singimpact.dynamics.chatter import ChatterLimit
 from singimpact.dynamics.gamma_proof.proof import CertifiedGamma
 from singimpact.flights.results import CertifiedImpact, Flight
@@ -135,6 +145,11 @@ def certify(result: Any) -> Certificate:
 
 
 def _sealed(statement: str, model: Oscillator, numbers: dict[str, Any]) -> Certificate:
+    if model.parametric and statement not in IN_TIME:
+        raise InputError(
+            f"the {statement} is not certified in a file: f = {model.f} depends on t, and of such a model the second "
+            f"program checks {', '.join(IN_TIME)}"
+        )
     content = {"schema": SCHEMA, "statement": statement, "model": model.to_dict(), **numbers}
     return Certificate({**content, "digest": digest_of(content)})
 

@@ -1,4 +1,4 @@
-"""The Taylor recurrence of x'' = g(t) - f(x, x'), as the source of one Python function.
+"""The Taylor recurrence of x'' = g(t) - f(x, x', t), as the source of one Python function.
 
 The text holds loops and integer constants alone, so that it runs on doubles (compiled or not) and on mpmath numbers.
 Every constant part of f and g is an entry of the argument `p`: it is computed elsewhere, once, correctly rounded,
@@ -22,6 +22,7 @@ from singimpact.algebra.expressions import (
     multiply,
     names_in,
     number,
+    subtract,
 )
 from singimpact.codegen.disc import (
     MOVING,
@@ -144,8 +145,8 @@ def recurrence(force: Expression, forcing: Expression, push: Expression | None =
 
     Parameters
     ----------
-    force, forcing : f in x, xdot and parameters; g in t and parameters.
-    push : what drives the third column: g' without it, for the derivative by the launch time; with g_p - f_p that
+    force, forcing : f in x, xdot, t and parameters; g in t and parameters.
+    push : what drives the third column: g' - f_t without it, for the derivative by the launch time; with g_p - f_p that
         column is the derivative by a parameter p.
 
     Raises
@@ -166,9 +167,15 @@ def recurrence(force: Expression, forcing: Expression, push: Expression | None =
     body = [*motion, "if k == 0:", "    X[2] += shift"]
     source = [_function("coefficients(launch, time, z, u, shift, n, p, work)", body), disc_source(bound, parts)]
     source.append(rounding_source(writer.disc("", "unit"), parts, steady))
-    source += _columns(writer, motion, force, derivative(forcing, "t") if push is None else push)
+    source += _columns(writer, motion, force, time_derivative(force, forcing) if push is None else push)
     sums = sum(line.strip().startswith(("while ", "for i in ")) for line in motion)
     return Recurrence("\n\n".join(source), tuple(writer.constants), max(writer.rows, 1), tuple(bound.suspects), sums)
+
+
+def time_derivative(force: Expression, forcing: Expression) -> Expression:
+    """g' - f_t: x'' by t at fixed x and x'."""
+    slope = derivative(forcing, "t")
+    return subtract(slope, derivative(force, "t")) if "t" in names_in(force) else slope
 
 
 def _columns(writer: _Writer, motion: list[str], force: Expression, push: Expression) -> list[str]:

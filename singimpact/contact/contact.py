@@ -63,14 +63,15 @@ class Contact:
     order : the contact order j.
     ring : the ring of the coefficients.
     a : k -> a^(k)(tau_*)/k!, from k = j on.
-    f : (i, k) -> f_ik/(i! k!) at (c, 0), (0, 0) left out.
+    f : (i, k) -> f_ik/(i! k!) at (c, 0), (0, 0) left out; where t occurs in f, at (c, 0, tau_*), with
+        derivatives by t under (i, k, m) -> f_ikm/(i! k! m!), m >= 1.
     tau : the point as an exact constant; None for a generic one.
     """
 
     order: int
     ring: Any
     a: Mapping[int, Any]
-    f: Mapping[tuple[int, int], Any]
+    f: Mapping[tuple[int, ...], Any]
     tau: Expression | None = None
 
     @classmethod
@@ -86,7 +87,7 @@ class Contact:
         free = [k for k in powers if k > j or not unit]
         ring = SymbolRing((*(derivative_name(k) for k in free), *(f"f_{i}{k}" for i, k in pairs), *more))
         a = {k: ring.symbol(derivative_name(k)) * ring.rational(Fraction(1, factorial(k))) for k in free}
-        f = {
+        f: dict[tuple[int, ...], Any] = {
             (i, k): ring.symbol(f"f_{i}{k}") * ring.rational(Fraction(1, factorial(i) * factorial(k))) for i, k in pairs
         }
         return cls(j, ring, {j: ring.rational(Fraction(1)), **a} if unit else a, f)
@@ -103,7 +104,7 @@ class Contact:
         require_smooth_text(oscillator.forcing(), "g")
         with precision_of(ring):
             a = acceleration_jet(oscillator, tau, max(order - 1, j), ring)
-            f = force_jet(oscillator, j, order, ring)
+            f = force_jet(oscillator, j, order, ring, tau=tau)
         jets = {k: value for k, value in enumerate(a) if k >= j}
         if order > j and all(value == 0 for value in jets.values()):
             raise InputError(
@@ -128,9 +129,16 @@ def acceleration_jet(oscillator: Oscillator, tau: Any, order: int, ring: Any, ke
 
 
 def force_jet(
-    oscillator: Oscillator, j: int, order: int, ring: Any, keep: Collection[str] = ()
-) -> dict[tuple[int, int], Any]:
-    """(i, k) -> f_ik/(i! k!) at (c, 0), for the pairs that the sheet to total order `order` needs."""
+    oscillator: Oscillator, j: int, order: int, ring: Any, keep: Collection[str] = (), tau: Any = None
+) -> dict[tuple[int, ...], Any]:
+    """(i, k) -> f_ik/(i! k!) at (c, 0), for the pairs that the sheet to total order `order` needs.
+
+    Parameters
+    ----------
+    tau : the time at which f is developed, where t occurs in it: the keys are as those of `Contact.f`.
+    """
+    if oscillator.parametric:
+        return _moving_force_jet(oscillator, j, order, ring, tau)
     pairs = _pairs(j, order)
     top = max((i + k for i, k in pairs), default=0)
     if not top:
@@ -141,3 +149,15 @@ def force_jet(
     letters = {name: space.constant(ring.symbol(name)) for name in keep}
     jet = space.evaluate(oscillator.force(keep), {"x": start + X, "xdot": V, **letters})
     return {pair: jet.terms[pair] for pair in pairs if pair in jet.terms}
+
+
+def _moving_force_jet(oscillator: Oscillator, j: int, order: int, ring: Any, tau: Any) -> dict[tuple[int, ...], Any]:
+    # sigma and t have degree 1, X and X' what they have on a flight; f is multiplied by t in the equation of the sheet
+    space = JetSpace(("X", "V", "u"), max(order - 1, 1), ring, (j + 2, j + 1, 1))
+    X, V, u = space.generators()
+    start, place = (
+        evaluate(each, {}, ring) if isinstance(each, Expression) else each for each in (tau, oscillator.clearance)
+    )
+    state = {"x": space.constant(place) + X, "xdot": V, "t": space.constant(start) + u}
+    terms = space.evaluate(oscillator.force(), state).terms
+    return {(i, k, m) if m else (i, k): value for (i, k, m), value in terms.items() if i + k}

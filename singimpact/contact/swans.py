@@ -24,7 +24,7 @@ from singimpact.algebra.expressions import (
     walk,
 )
 from singimpact.algebra.isolated_zeros import double_zeros, is_one_root, isolate
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import as_float, sign_of
 from singimpact.algebra.precision import kept_property
 from singimpact.algebra.rings import EXACT, SYMBOLIC, ExactAtAngles
 from singimpact.contact.points import enclosed, is_polynomial, window
@@ -136,12 +136,13 @@ class SwanPoints(Results, tuple[SwanPoint, ...]):
 def swan_points_over_clearance(model: Oscillator, between: tuple[Fraction, Fraction] | None = None) -> SwanPoints:
     """The swan points of x'' + f = g as the clearance varies in an interval; without one, over all clearances.
 
-    a_c'(tau) = g'(tau) is free of c, so tau_* is a zero of g' and c_0 solves f(c, 0) = g(tau_*).
+    a_c'(tau) = g'(tau) is free of c, so tau_* is a zero of g' and c_0 solves f(c, 0) = g(tau_*). Where t occurs in
+    f(c, 0, t) = A(t) c + B(t), tau_* is a zero of c'(t) for c = (g - B)/A.
 
     Raises
     ------
-    InputError : g is neither periodic nor a polynomial; f(c, 0) is no polynomial and there is no interval; a zero of g'
-        or of f(c, 0) - g(tau_*) is double.
+    InputError : f(c, 0, t) depends on t together with powers of c; g is neither periodic nor a polynomial; f(c, 0) is
+        no polynomial and there is no interval; a zero of g' or of f(c, 0) - g(tau_*) is double.
 
     Examples
     --------
@@ -149,7 +150,7 @@ def swan_points_over_clearance(model: Oscillator, between: tuple[Fraction, Fract
     >>> [(p.kind, p.clearance) for p in swan_points_over_clearance(model, (Fraction(-2), Fraction(2)))]
     [('negative', 1.0), ('positive', -1.0)]
     """
-    slope = derivative(model.forcing(), "t")
+    slope, factor = _slope_of_swans(model)
     if "t" not in names_in(slope):
         return SwanPoints()
     points: list[SwanPoint] = []
@@ -161,7 +162,7 @@ def swan_points_over_clearance(model: Oscillator, between: tuple[Fraction, Fract
             )
         time = _named_time(model, slope, zero)
         if _in_period(model, as_float(time)):
-            kind = "positive" if zero.slope > 0 else "negative"
+            kind = "positive" if zero.slope * sign_of(substitute(factor, {"t": time})) > 0 else "negative"
             places, window_of_them = _clearances(model, time, between)
             points += [SwanPoint(model, time, clearance, kind) for clearance in places]
             ends += window_of_them
@@ -169,6 +170,22 @@ def swan_points_over_clearance(model: Oscillator, between: tuple[Fraction, Fract
     if ends:
         ordered.model, ordered.between = model, (min(ends), max(ends))
     return ordered
+
+
+def _slope_of_swans(model: Oscillator) -> tuple[Expression, Expression]:
+    """A function of t with the zeros of swan points, and the factor that gives it the sign of a_c'."""
+    slope = derivative(model.forcing(), "t")
+    if not model.parametric:
+        return slope, number(1)
+    rest = substitute(model.force(), {"xdot": number(0)})
+    A, push = derivative(rest, "x"), subtract(model.forcing(), substitute(rest, {"x": number(0)}))
+    if "t" not in names_in(A):
+        return derivative(push, "t"), number(1)
+    if "x" in names_in(A):
+        raise InputError(
+            f"f = {model.f} depends on t together with powers of x: swan points need f(x, 0, t) linear in x"
+        )
+    return subtract(multiply(derivative(push, "t"), A), multiply(push, derivative(A, "t"))), A
 
 
 def _in_period(model: Oscillator, tau: float) -> bool:
@@ -216,7 +233,7 @@ def _clearances(
     model: Oscillator, time: Expression, between: tuple[Fraction, Fraction] | None
 ) -> tuple[list[Expression], tuple[Fraction, Fraction]]:
     """The solutions c of f(c, 0) = g(tau_*), and an interval that has been searched for them."""
-    rest = substitute(model.force(), {"xdot": number(0)})
+    rest = substitute(model.force(), {"xdot": number(0), "t": time})
     value = _exact(model.forcing(), {"t": time})
     level = substitute(model.forcing(), {"t": time}) if value is None else Number(value)
     shifted = subtract(rest, level)

@@ -17,6 +17,7 @@ from singimpact.dynamics.orbit import Orbit, dropped_orbit, orbit
 from singimpact.inputs import refuse, require_memory
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import with_number
+from singimpact.oscillator.period import moving_in_time
 from singimpact.result import Result
 from singimpact.surface.curve import window_ends
 
@@ -161,8 +162,8 @@ def _made(over: str, values: Array, events: Array, direction: str, periods: Arra
 
 
 def _periods(model: Oscillator, over: str, values: Array) -> Array:
-    """The period of the forcing at each value; only parameters of g change it."""
-    if over not in names_in(model.g):
+    """The period at each value; only parameters that occur beside t change it."""
+    if not any(over in names_in(tree) for tree in moving_in_time(model.f, model.g).values()):
         assert model.period is not None
         return np.full(values.size, as_float(model.period))
     moved = [model.replace(**{over: value}).period for value in values.tolist()]

@@ -15,7 +15,7 @@ from singimpact.flights.limits import LIMITS
 from singimpact.flights.model_numbers import constants_of, recurrence_of
 from singimpact.flights.states import at_rest
 from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.wall_acceleration import resting_force
+from singimpact.oscillator.wall_acceleration import at_wall
 
 ORDER = 22
 SAME = 4 * EPSILON
@@ -100,7 +100,8 @@ def _lifted(osc: Oscillator, tau: float) -> float:
 @lru_cache(maxsize=64)
 def _resting_model(osc: Oscillator) -> tuple[dict[str, Any], list[float], int]:
     """x'' = -a_c(t) as a recurrence; its coefficients give those of -a_c."""
-    model = Oscillator(number(0), subtract(resting_force(osc), osc.forcing()), 0, 1)
+    moving, steady = at_wall(osc)
+    model = Oscillator(number(0), subtract(steady, moving), 0, 1)
     flow = recurrence_of(model)
     numbers = [as_float(tree) for tree in constants_of(model, linear=False)]
     return over_floats(flow.source), numbers, flow.rows

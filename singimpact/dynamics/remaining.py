@@ -22,7 +22,7 @@ from singimpact.algebra.rings import DOUBLES
 from singimpact.contact.contact import Contact
 from singimpact.generated.completion import chatter_terms
 from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.wall_acceleration import acceleration
+from singimpact.oscillator.wall_acceleration import acceleration, at_wall
 
 ORDER = 4
 """Terms of the time left, where rho is smooth at rest."""
@@ -44,27 +44,51 @@ def remaining(osc: Oscillator, tau: Array, v: Array, a: Array | None = None) -> 
     [[2.0], [0.0]]
     """
     forces, rebounds, slopes = _jets(osc)
+    if osc.parametric:
+        forces = _forces_at(osc, tau)
     push = acceleration(osc, tau) if a is None else a
     with np.errstate(all="ignore"):
         jets = {f"a_d{n}": evaluate(tree, {"t": tau}, DOUBLES) + 0.0 * tau for n, tree in enumerate(slopes, 1)}
         if not osc.smooth_at_rest:
             return left_of_chatter(osc, v, push, jets, forces)  # type: ignore[no-any-return]
-        terms = chatter_terms(v=v, lambda_=as_float(osc.slope_at_rest()), a=push, **jets, **forces, **rebounds)
+        formula = {name: forces[name] for name in NAMES.values()}
+        terms = chatter_terms(v=v, lambda_=as_float(osc.slope_at_rest()), a=push, **jets, **formula, **rebounds)
         first, *_, before, last = terms
         # a coefficient may happen to be small: the term before lets expect this one
         likely = np.abs(before) * np.abs(before / first) ** (1 / (ORDER - 2))
+        if osc.parametric:  # f_01 moves by f_011 t: the terms from the third on lack that
+            return terms[0] + terms[1], np.abs(terms[2]) + np.abs(forces["f_011"] * first) * first**2
     return sum(reversed(terms)), np.maximum(np.abs(last), likely)
+
+
+NAMES = {(0, 1): "f_01", (0, 2): "f_02", (0, 3): "f_03", (1, 0): "f_10", (1, 1): "f_11"}
+"""Derivatives of f by x and x' in the terms."""
+
+
+@lru_cache(maxsize=256)
+def _force_trees(osc: Oscillator) -> dict[str, Expression]:
+    """Derivatives of f at (c, 0, t) as trees in t, and f_011, that of f_01 by t."""
+    trees, at_rest = dict[str, Expression](), {"x": osc.clearance, "xdot": number(0)}
+    for (i, k), name in NAMES.items():
+        tree = osc.force()
+        for letter in ["x"] * i + ["xdot"] * k:
+            tree = derivative(tree, letter)
+        trees[name] = substitute(tree, at_rest)
+    return trees | {"f_011": derivative(trees["f_01"], "t")}
+
+
+def _forces_at(osc: Oscillator, tau: Array) -> dict[str, Any]:
+    return {name: evaluate(tree, {"t": tau}, DOUBLES) + 0.0 * tau for name, tree in _force_trees(osc).items()}
 
 
 @lru_cache(maxsize=256)
 def _jets(osc: Oscillator) -> tuple[dict[str, float], dict[str, float], tuple[Expression, ...]]:
     """Derivatives of f at (c, 0), coefficients of rho, and the first derivatives of g as trees."""
-    at = Contact.of(osc, 0.0, 0, ORDER, DOUBLES).f
-    names = {(0, 1): "f_01", (0, 2): "f_02", (0, 3): "f_03", (1, 0): "f_10", (1, 1): "f_11"}
-    forces = {name: float(at.get(key, 0.0)) * factorial(key[0]) * factorial(key[1]) for key, name in names.items()}
+    at = {} if osc.parametric else Contact.of(osc, 0.0, 0, ORDER, DOUBLES).f
+    forces = {name: float(at.get(key, 0.0)) * factorial(key[0]) * factorial(key[1]) for key, name in NAMES.items()}
     rebounds = _coefficients(osc)
     trees = []
-    forcing = osc.forcing()
+    forcing = at_wall(osc).moving
     for _ in range(ORDER - 1):
         forcing = derivative(forcing, "t")
         trees.append(forcing)
@@ -231,6 +255,7 @@ def left_of_chatter(osc: Oscillator, v: Array, a: Array, jets: dict[str, Any], f
         pure, steep = sum(reversed(parts)), jets["a_d1"] / a
         first = -((q + 2) / 6 * steep + (1 - q) / 6 * forces["f_01"]) * pure**2
         rate = np.abs(steep) + np.sqrt(np.abs(jets["a_d2"] / a)) + abs(forces["f_01"]) + np.sqrt(abs(forces["f_10"]))
+        rate = rate + np.sqrt(np.abs(forces.get("f_011", 0.0)))
         cross = rate * pure**2 * abs(as_float(loss.C)) * v ** float(loss.q)
         last = np.abs(parts[-1]) if len(parts) > 1 else 0 * pure
         return pure + first, last + cross + rate**2 * np.abs(pure) ** 3

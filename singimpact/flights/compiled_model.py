@@ -69,7 +69,7 @@ class CompiledModel:
         self.osc, self.allowance = osc, allowance
         self.form = linear_form(osc)
         self.linear = flow is None and has_table(osc)
-        text, trees = scalar(rho_of(osc.restitution), "v", LAW)
+        text, trees = scalar(rho_of(osc.restitution), ("v",), LAW)
         self.constant_restitution = not names_in(osc.restitution)
         if self.constant_restitution:
             text, trees = "", (osc.restitution,)

@@ -154,7 +154,7 @@ def log_determinant(osc: Oscillator, tau: Array, v: Array, time: Array, velocity
 def _integral_of_damping(osc: Oscillator, tau: Array, v: Array, time: Array) -> Array:
     """The integral of f_v along each flight."""
     slope = formula_of_derivative(osc.f, "xdot")
-    if not names_in(slope) & {"x", "xdot"}:
+    if not names_in(slope) & {"x", "xdot", "t"}:
         return as_float(substitute(slope, osc.parameters)) * time
     slope = formula_of_derivative(osc.force(), "xdot")
     nodes, weights = np.polynomial.legendre.leggauss(SETTINGS.nodes)
@@ -165,7 +165,8 @@ def _integral_of_damping(osc: Oscillator, tau: Array, v: Array, time: Array) -> 
         ((np.arange(n)[:, None] + (1 + nodes) / 2) * width).ravel() for n, width in zip(counts, widths, strict=True)
     ]
     clearance, integrals = as_float(osc.clearance), []
-    for way, width in zip(many_paths(osc, tau, v, ticks), widths, strict=True):
-        values = evaluate(slope, {"x": clearance + way[:, 0], "xdot": way[:, 1]}, DOUBLES) + np.zeros(len(way))
+    for start, late, way, width in zip(tau, ticks, many_paths(osc, tau, v, ticks), widths, strict=True):
+        state = {"x": clearance + way[:, 0], "xdot": way[:, 1], "t": start + late}
+        values = evaluate(slope, state, DOUBLES) + np.zeros(len(way))
         integrals.append(width / 2 * (values.reshape(-1, SETTINGS.nodes) @ weights).sum())
     return np.array(integrals)

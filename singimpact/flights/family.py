@@ -38,8 +38,7 @@ from singimpact.flights.kernels import layout
 from singimpact.flights.model_numbers import fastest_rate, recurrence_of
 from singimpact.oscillator.linear import LinearForm, form_of
 from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION, value_of
-from singimpact.oscillator.period import common_period
+from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION, period_over, value_of
 from singimpact.oscillator.rebound import rho_of
 
 Values = Mapping[str, float]
@@ -91,7 +90,7 @@ class Family(ABC):
         self.fixed = {name: tree for name, tree in osc.parameters.items() if name not in over}
         self.start = {name: value_of(osc, name) for name in over}
         self.fastest = fastest_rate(osc)
-        self._period = self._tree(common_period(osc.g) if _moves(osc.g, over) else osc.period)
+        self._period = self._tree(period_over(osc, over))
         self._rho = [self._tree(tree) for tree in _rebound(osc, over)]
         # flights of one orbit have the same numbers: those of the last call are remembered
         self._last_period: tuple[Values, Number] | None = None

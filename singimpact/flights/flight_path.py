@@ -150,6 +150,6 @@ def ends(osc: Oscillator, tau: Array, v: Array, times: Array) -> tuple[Array, Ar
         rows[ended] = model.follow_all(start, velocity, np.ones(time.size, int), time)
     position, speed = rows.T
     with np.errstate(all="ignore"):
-        forcing = evaluate(osc.forcing(), {"t": tau + times}, DOUBLES)
-        force = evaluate(osc.force(), {"x": as_float(osc.clearance) + position, "xdot": speed}, DOUBLES)
+        state = {"x": as_float(osc.clearance) + position, "xdot": speed, "t": tau + times}
+        forcing, force = (evaluate(tree, state, DOUBLES) for tree in (osc.forcing(), osc.force()))
         return position, speed, np.asarray(forcing - force + 0 * position)

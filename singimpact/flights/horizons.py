@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.expressions import evaluate
-from singimpact.algebra.numbers import as_float, constant, sign_of
+from singimpact.algebra.numbers import Array, as_float, constant, sign_of
 from singimpact.algebra.rings import DOUBLES
 from singimpact.flights.kernels.hits import UNIT as EPSILON
 from singimpact.flights.limits import LIMITS
@@ -15,6 +15,7 @@ from singimpact.flights.model_numbers import fastest_rate, has_table, recurrence
 from singimpact.inputs import refuse
 from singimpact.oscillator.linear import LinearForm, at_rest, linear_form
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.wall_acceleration import at_wall
 
 
 @dataclass(frozen=True)
@@ -134,9 +135,10 @@ def _of_nonlinear(osc: Oscillator) -> tuple[list[float], float]:
     clearance = as_float(osc.clearance)
     amplitudes = np.array(SETTINGS.amplitudes) * max(1.0, abs(clearance))
     with np.errstate(all="ignore"):
-        forcing = evaluate(osc.forcing(), {"t": phases}, DOUBLES) + 0 * phases
+        moving = at_wall(osc).moving if osc.parametric else osc.forcing()
+        forcing = evaluate(moving, {"t": phases}, DOUBLES) + 0 * phases
         above = clearance + np.concatenate([[0.0], amplitudes])
-        force = evaluate(osc.force(), {"x": above, "xdot": 0 * above}, DOUBLES) + 0 * above
+        force = _mean_force(osc, above, phases)
         average = 0.0 if osc.period is None else float(forcing.mean())
         secant = (force[1:] - average) / amplitudes
         half_turns = np.pi / np.sqrt(secant[secant > 0])
@@ -145,6 +147,15 @@ def _of_nonlinear(osc: Oscillator) -> tuple[list[float], float]:
         return times, 0.0
     swing = float(np.abs(forcing - average).max())
     return _turned_back(times, average - float(force[0]), swing, swing * period / (2 * np.pi))
+
+
+def _mean_force(osc: Oscillator, above: Array, phases: Array) -> Array:
+    """f(x, 0) at some places; its mean over a period, less that at the wall, where t occurs in f."""
+    if not osc.parametric:
+        return np.asarray(evaluate(osc.force(), {"x": above, "xdot": 0 * above}, DOUBLES) + 0 * above)
+    state = {"x": above[:, None], "xdot": 0.0, "t": phases}
+    means = (evaluate(osc.force(), state, DOUBLES) + np.zeros((above.size, phases.size))).mean(axis=1)
+    return np.asarray(means - means[0])
 
 
 def _turned_back(times: list[float], mean: float, force: float, speed: float) -> tuple[list[float], float]:

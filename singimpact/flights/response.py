@@ -58,8 +58,9 @@ def response_of_one(osc: Oscillator, tau: float, v: float, time: float, velocity
     """`response` of one hit of a launch with v > 0, in floats."""
     forcing, force = in_floats_of(osc)
     parts = compiled_model(osc).one(VARIATIONS, tau, v, time)[1][:4]
-    ahead = forcing((tau if osc.period is None else float(reduced(np.array([tau]), osc.period)[0])) + time)
-    there = ahead - force(velocity)
+    at = (tau if osc.period is None else float(reduced(np.array([tau]), osc.period)[0])) + time
+    ahead = forcing(at)
+    there = ahead - force(velocity, at)
     if not abs(there) >= LIMITS.cancelled * abs(ahead):
         there = float(_acceleration(osc, *(np.array([number]) for number in (tau, time, velocity)))[0])
     return _response(parts, velocity, there)
@@ -106,8 +107,9 @@ def _acceleration(osc: Oscillator, tau: Array, time: Array, velocity: Array) -> 
     """x'' at the hits."""
     start = tau if osc.period is None else reduced(tau, osc.period)
     with np.errstate(all="ignore"):
-        forcing = evaluate(osc.forcing(), {"t": start + time}, DOUBLES) + 0 * velocity
-        force = evaluate(osc.force(), {"x": as_float(osc.clearance), "xdot": velocity}, DOUBLES)
+        state = {"x": as_float(osc.clearance), "xdot": velocity, "t": start + time}
+        forcing = evaluate(osc.forcing(), state, DOUBLES) + 0 * velocity
+        force = evaluate(osc.force(), state, DOUBLES)
         difference = np.asarray(forcing - force)
         # where g and f nearly cancel, doubles keep too few digits of x''
         for index in np.flatnonzero(np.abs(difference) < LIMITS.cancelled * np.abs(forcing)):
@@ -120,7 +122,7 @@ def _cancelled(osc: Oscillator, at: float, velocity: float) -> float:
     balls = Balls(256)
     speed, time = (balls.rational(Fraction(float(value))) for value in (velocity, at))
     with balls_at(balls.bits):
-        force = balls.evaluate(osc.force(), {"x": balls.evaluate(osc.clearance, {}), "xdot": speed})
+        force = balls.evaluate(osc.force(), {"x": balls.evaluate(osc.clearance, {}), "xdot": speed, "t": time})
         return float((balls.evaluate(osc.forcing(), {"t": time}) - force).mid())
 
 
@@ -135,6 +137,5 @@ def precise(osc: Oscillator, tau: Any, v: Any, time: Any, velocity: Any, mp: Any
     rules = Rules(mp.inf, LIMITS.steps, order, order, 8 * mp.eps, 0, 0, 0, 0, 0, 0)
     *parts, _ = space["derivatives_at"]([tau], v, time, p, rules, work, columns)
     ring = Multiprecision(mp)
-    values = {"x": as_mpf(osc.clearance, mp), "xdot": velocity}
-    force = evaluate(osc.force(), values, ring)
-    return _response(parts, velocity, evaluate(osc.forcing(), {"t": tau + time}, ring) - force)
+    values = {"x": as_mpf(osc.clearance, mp), "xdot": velocity, "t": tau + time}
+    return _response(parts, velocity, evaluate(osc.forcing(), values, ring) - evaluate(osc.force(), values, ring))

@@ -82,10 +82,14 @@ def form_of(force: Expression, forcing: Expression) -> LinearForm | None:
     k w
     """
     pull = _affine(force)
-    waves = _waves(forcing)
-    if pull is None or waves is None:
+    if pull is None or "t" in names_in(pull[0]) | names_in(pull[1]):
         return None
     stiffness, damping, offset = pull
+    if "t" in names_in(offset):  # a part of f in t alone drives the mass like g
+        offset, forcing = number(0), subtract(forcing, offset)
+    waves = _waves(forcing)
+    if waves is None:
+        return None
     steady, harmonics = waves
     return LinearForm(damping, stiffness, subtract(steady, offset), tuple(harmonics))
 

@@ -14,7 +14,7 @@ from singimpact.algebra.puiseux import Puiseux
 from singimpact.algebra.rings import to_sympy
 from singimpact.inputs import InputError, checked_methods, refuse, require_known, shown, unknown
 from singimpact.oscillator import rebound
-from singimpact.oscillator.period import checked_period, period_of
+from singimpact.oscillator.period import checked_period, moving_in_time, period_of
 from singimpact.store import read_bounded
 
 STATE = ("x", "xdot")
@@ -24,17 +24,19 @@ RESERVED = {*STATE, "t", "v", "pi", *FUNCTIONS}
 
 @checked_methods
 class Oscillator:
-    """x'' + f(x, x') = g(t), x >= clearance, v -> -restitution v, or v -> rho(v).
+    """x'' + f(x, x', t) = g(t), x >= clearance, v -> -restitution v, or v -> rho(v).
 
     Parameters
     ----------
-    f : expression in x, xdot and the parameters: text, a Python function, sympy or a number.
+    f : expression in x, xdot, t and the parameters: text, a Python function, sympy or a number. A force in which t
+        occurs is one with moving coefficients, "(1 + cos(2*t)/5)*x".
     g : expression in t and the parameters.
     clearance : number, the obstacle's place; finite.
     restitution : number r in (0, 1], for v -> -r v; or an expression rho in the velocity v before the impact and the
         parameters, with rho(0) = 0 and rho'(0) in [-1, 0), for v -> rho(v). Powers such as (-v)**(6/5) are allowed.
     parameters : name -> number.
-    period : number, optional; a period of g. Found from g when it can be; needed only where a task asks for one.
+    period : number, optional; a common period of f and g in t. Computed where t enters through sines and cosines of
+        commensurate rates; needed only where a task asks for one.
 
     Raises
     ------
@@ -64,7 +66,7 @@ class Oscillator:
     ) -> None:
         values = _parameters(parameters or {})
         self.parameters: Mapping[str, Expression] = MappingProxyType(values)
-        self.f = tree_of(f, (*STATE, *values), "f")
+        self.f = tree_of(f, (*STATE, "t", *values), "f")
         self.g = tree_of(g, ("t", *values), "g")
         self.restitution = rebound.read(restitution, values)
         used = names_in(self.f) | names_in(self.g) | names_in(self.restitution)
@@ -72,10 +74,10 @@ class Oscillator:
             if name not in used:
                 raise unknown("parameter", name, sorted((used | {name}) - {*STATE, "t", "v", name}))
         self.clearance = constant("clearance", clearance)
-        forcing = substitute(self.g, values)
-        self._period = period_of(forcing)
+        moving = {name: substitute(tree, values) for name, tree in moving_in_time(self.f, self.g).items()}
+        self._period = period_of(*moving.values())
         if period is not None:
-            self._period = checked_period(forcing, period, self._period)
+            self._period = checked_period(moving, period, self._period)
         self._texts = (
             str(self.f),
             str(self.g),
@@ -96,8 +98,13 @@ class Oscillator:
 
     @property
     def period(self) -> Expression | None:
-        """The period of g, or None when g is constant or not known to be periodic."""
+        """The common period of f and g in t, or None when both are free of t or not known to be periodic."""
         return self._period
+
+    @property
+    def parametric(self) -> bool:
+        """Whether t occurs in f."""
+        return "t" in names_in(self.f)
 
     def force(self, keep: Collection[str] = ()) -> Expression:
         """f with the parameters' values put in; those in `keep` stay letters."""

@@ -1,11 +1,13 @@
 """Numbers of a model that can move, also those that the model does not name."""
 
+from collections.abc import Collection
 from typing import Any
 
-from singimpact.algebra.expressions import Name, add, multiply, names_in, number
+from singimpact.algebra.expressions import Expression, Name, add, multiply, names_in, number
 from singimpact.algebra.numbers import as_float
 from singimpact.inputs import InputError, unknown
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.period import common_period, moving_in_time
 
 CLEARANCE, RESTITUTION = "clearance", "restitution"
 LINEAR = {"amplitude": 1, "damping": 0, "stiffness": 1, "phase": 0}
@@ -63,6 +65,20 @@ def value_of(osc: Oscillator, name: str) -> float:
     """
     fields = {CLEARANCE: osc.clearance, RESTITUTION: osc.restitution, **osc.parameters}
     return as_float(fields[name]) if name in fields else float("nan")
+
+
+def period_over(osc: Oscillator, names: Collection[str]) -> Expression | None:
+    """The period of a model in which some numbers are letters; None where it is not known how it depends on them.
+
+    Examples
+    --------
+    >>> print(period_over(Oscillator("x + sin(w*t)*x**2", "cos(2*w*t)", 0, 1, {"w": 3}), ["w"]))
+    2*pi/w
+    """
+    moving = moving_in_time(osc.force(names), osc.forcing(names))
+    if not any(names_in(tree).intersection(names) for tree in moving.values()):
+        return osc.period
+    return common_period(*moving.values())
 
 
 def _shifted(g: Any, letter: Name) -> Any:

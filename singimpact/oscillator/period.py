@@ -1,5 +1,6 @@
-"""The period of a forcing g(t): found from its frequencies, or checked when it is given."""
+"""The common period of f and g in t: found from their frequencies, or checked when it is given."""
 
+from collections.abc import Mapping
 from fractions import Fraction
 from math import gcd, lcm
 from typing import Any
@@ -74,8 +75,13 @@ def _split(rate: Expression) -> tuple[Fraction, Expression]:
     return Fraction(1), rate
 
 
-def period_of(forcing: Expression) -> Expression | None:
-    """The period 2 pi/(greatest common frequency), or None when g is constant or is not seen to be periodic.
+def moving_in_time(force: Expression, forcing: Expression) -> dict[str, Expression]:
+    """f and g by name; f is left out where t does not occur in it."""
+    return {"g": forcing, **({"f": force} if "t" in names_in(force) else {})}
+
+
+def period_of(*trees: Expression) -> Expression | None:
+    """The period 2 pi/(greatest common frequency), or None when t occurs in no tree, or one is not seen to be periodic.
 
     Examples
     --------
@@ -85,14 +91,14 @@ def period_of(forcing: Expression) -> Expression | None:
     >>> print(period_of(parse("t*cos(t)", ["t"])))
     None
     """
-    period = common_period(forcing)
+    period = common_period(*trees)
     if period is None:
         return None
     return period if compare(period, 0) > 0 else multiply(number(-1), period)
 
 
-def common_period(forcing: Expression) -> Expression | None:
-    """A common period up to its sign, where rates may hold letters.
+def common_period(*trees: Expression) -> Expression | None:
+    """A common period of trees in t, up to its sign; their rates may hold letters.
 
     Examples
     --------
@@ -100,8 +106,10 @@ def common_period(forcing: Expression) -> Expression | None:
     >>> print(common_period(parse("cos(w*t) + sin(2*w*t)", ["w", "t"])))
     2*pi/w
     """
-    rates = _frequencies(forcing)
-    moving = [_split(rate) for rate in rates or [] if rate != number(0)]
+    rates = [_frequencies(tree) for tree in trees]
+    if None in rates:
+        return None
+    moving = [_split(rate) for some in rates for rate in some or [] if rate != number(0)]
     if not moving or any(rest != moving[0][1] for _, rest in moving):
         return None
     sizes = [abs(size) for size, _ in moving]
@@ -109,26 +117,29 @@ def common_period(forcing: Expression) -> Expression | None:
     return multiply(number(2 / common), Pi(), power(moving[0][1], number(-1)))
 
 
-def checked_period(forcing: Expression, given: Any, found: Expression | None) -> Expression:
-    """A period the caller gives, refused when g does not repeat with it at some sample times."""
-    period = constant("period", given)
+def checked_period(trees: Mapping[str, Expression], value: Any, computed: Expression | None) -> Expression:
+    """A period the caller gives, refused when f or g does not repeat with it at some sample times."""
+    period = constant("period", value)
     if compare(period, 0) <= 0:
-        raise refuse("period", given, "a positive number")
-    if "t" in names_in(forcing) and period != found and not _repeats(forcing, period):
-        raise InputError(
-            f"period = {shown(given)} is not a period of g = {shown(str(forcing))}: give one with g(t + period) = g(t)"
-        )
+        raise refuse("period", value, "a positive number")
+    for name, tree in trees.items():
+        if "t" in names_in(tree) and period != computed and not _repeats(tree, period):
+            later = "g(t + period) = g(t)" if name == "g" else "f(x, xdot, t + period) = f(x, xdot, t)"
+            raise InputError(
+                f"period = {shown(value)} is not a period of {name} = {shown(str(tree))}: give one with {later}"
+            )
     return period
 
 
-def _repeats(forcing: Expression, period: Expression) -> bool:
+def _repeats(tree: Expression, period: Expression) -> bool:
     from singimpact.algebra.balls import Balls
 
     balls = Balls(256)
     for numerator in (1, 17, 35, 52, 71, 97):
         start = number(Fraction(numerator, 53))
-        later = substitute(forcing, {"t": add(start, period)})
-        difference = balls.evaluate(subtract(later, substitute(forcing, {"t": start})), {})
+        state = {"x": number(Fraction(numerator, 101)), "xdot": number(Fraction(numerator, 103))}
+        later = substitute(tree, {"t": add(start, period), **state})
+        difference = balls.evaluate(subtract(later, substitute(tree, {"t": start, **state})), {})
         if not difference.is_finite() or not abs(difference) < balls.rational(Fraction(1, 10**30)):
             return False
     return True

@@ -25,7 +25,7 @@ from singimpact.algebra.expressions import (
 )
 from singimpact.algebra.numbers import float_array, tree_of
 from singimpact.algebra.rings import DOUBLES
-from singimpact.inputs import InputError, shown, unknown
+from singimpact.inputs import unknown
 from singimpact.oscillator.linear import form_of
 from singimpact.oscillator.model import STATE, Oscillator, require_smooth_text
 
@@ -97,13 +97,14 @@ def shaken_wall(
 
     Parameters
     ----------
-    f, g, restitution, parameters, period : as for `Oscillator`; f is linear in x and xdot, or the wall is at rest. The
+    f, g, restitution, parameters, period : as for `Oscillator`, f and g in the frame at rest. The
         restitution is that of velocities relative to the wall.
     wall : expression in t and the parameters, the place of the wall. kind : the class of the model.
 
-    Raises
-    ------
-    InputError : f is not linear while the wall moves, for f of a model does not depend on t.
+    Notes
+    -----
+    In y = x - w(t) the equation is y'' + f(y + w, y' + w', t) + w'' = g. Where f is linear the terms in w are part of
+    the forcing; otherwise t occurs in the f of the model.
 
     Examples
     --------
@@ -113,19 +114,15 @@ def shaken_wall(
     names = tuple(parameters or {})
     trees = {
         name: tree_of(value, (*letters, *names), name)
-        for name, value, letters in (("f", f, STATE), ("g", g, ("t",)), ("wall", wall, ("t",)))
+        for name, value, letters in (("f", f, (*STATE, "t")), ("g", g, ("t",)), ("wall", wall, ("t",)))
     }
     wall_tree = trees["wall"]
     require_smooth_text(wall_tree, "wall")
     moving = "t" in names_in(wall_tree)
     form = form_of(trees["f"], number(0))
-    if moving and form is None:
-        raise InputError(
-            f"f = {shown(str(trees['f']))} with a wall that moves is not accepted: give f linear in x and xdot, as f of"
-            " a model does not depend on t"
-        )
     speed = derivative(wall_tree, "t")
-    force, forcing = substitute(trees["f"], {"x": add(Name("x"), wall_tree)}), trees["g"]
+    force = substitute(trees["f"], {"x": add(Name("x"), wall_tree), "xdot": add(Name("xdot"), speed)})
+    forcing = minus(trees["g"], derivative(speed, "t")) if moving else trees["g"]
     if moving and form is not None:
         terms = derivative(speed, "t"), multiply(form.stiffness, wall_tree), multiply(form.damping, speed)
         force, forcing = trees["f"], minus(trees["g"], add(*terms))

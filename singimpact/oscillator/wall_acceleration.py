@@ -1,4 +1,4 @@
-"""a_c(tau) = g(tau) - f(c, 0), the acceleration of a mass at rest on the obstacle, its derivatives, and its zeros.
+"""a_c(tau) = g(tau) - f(c, 0, tau), the acceleration of a mass at rest on the obstacle, its derivatives, and its zeros.
 
 A launch at rest next to a zero of a_c is a launch from that zero: no double is pi/2, and a mass released at the double
 next to a zero would fly or stick by the sign of a rounding.
@@ -9,12 +9,12 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
 from math import factorial, ulp
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from singimpact.algebra.balls import Balls, as_rational
-from singimpact.algebra.expressions import Expression, Number, evaluate, names_in, number, substitute
+from singimpact.algebra.expressions import Expression, Number, evaluate, names_in, number, substitute, subtract
 from singimpact.algebra.jets import JetSpace
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.precision import balls_at
@@ -34,10 +34,24 @@ BITS = (128, 512, 2048, 8192)
 """Precisions tried until the sign of a is decided; what is still undecided is below 10^-2000 and is taken as zero."""
 
 
+class AtWall(NamedTuple):
+    """a_c = moving - steady: g and f(c, 0); where t occurs in f(c, 0, t), all of a_c and 0."""
+
+    moving: Expression
+    steady: Expression
+
+
 @lru_cache(maxsize=256)
-def resting_force(osc: Oscillator) -> Expression:
-    """f(c, 0)."""
-    return substitute(osc.force(), {"x": osc.clearance, "xdot": number(0)})
+def at_wall(osc: Oscillator) -> AtWall:
+    """The two parts of a_c.
+
+    Examples
+    --------
+    >>> print(*at_wall(Oscillator("x + x**2*sin(t)", "cos(t)", 3, 1)))
+    cos(t) - (9*sin(t) + 3) 0
+    """
+    force, forcing = substitute(osc.force(), {"x": osc.clearance, "xdot": number(0)}), osc.forcing()
+    return AtWall(subtract(forcing, force), number(0)) if "t" in names_in(force) else AtWall(forcing, force)
 
 
 def acceleration(osc: Oscillator, tau: np.ndarray[Any, Any], order: int = 0) -> np.ndarray[Any, Any]:
@@ -85,10 +99,10 @@ def acceleration_at(osc: Oscillator, tau: float) -> float:
 
 
 @lru_cache(maxsize=256)
-def in_floats_of(osc: Oscillator) -> tuple[Callable[[float], float], Callable[[float], float]]:
-    """g(t), and f(c, x'), as functions of floats."""
+def in_floats_of(osc: Oscillator) -> tuple[Callable[[float], float], Callable[[float, float], float]]:
+    """The moving part of a_c by t, and f(c, x', t) by x' and t, as functions of floats."""
     force = substitute(osc.force(), {"x": osc.clearance})
-    return in_floats(_forcing_tree(osc)[0], "t"), in_floats(force, "xdot")
+    return in_floats(_moving_part(osc)[0], "t"), in_floats(force, "xdot", "t")
 
 
 def _near(osc: Oscillator, tau: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
@@ -124,7 +138,7 @@ def largest_push(osc: Oscillator) -> float:
 
 
 def _forcing(osc: Oscillator, tau: np.ndarray[Any, Any], order: int) -> np.ndarray[Any, Any]:
-    forcing, steady = _forcing_tree(osc)
+    forcing, steady = _moving_part(osc)
     if order or steady is not None:
         return np.full(tau.shape, 0.0 if order or steady is None else steady)
     with np.errstate(all="ignore"):
@@ -132,15 +146,15 @@ def _forcing(osc: Oscillator, tau: np.ndarray[Any, Any], order: int) -> np.ndarr
 
 
 @lru_cache(maxsize=256)
-def _forcing_tree(osc: Oscillator) -> tuple[Expression, float | None]:
-    """g with its parameters put in, and its value when it does not move."""
-    forcing = osc.forcing()
+def _moving_part(osc: Oscillator) -> tuple[Expression, float | None]:
+    """The moving part of a_c, and its value when it does not move."""
+    forcing = at_wall(osc).moving
     return forcing, None if "t" in names_in(forcing) else as_float(forcing)
 
 
 @lru_cache(maxsize=256)
 def _resting_float(osc: Oscillator) -> float:
-    return as_float(resting_force(osc))
+    return as_float(at_wall(osc).steady)
 
 
 def as_ball(osc: Oscillator, tau: Expression, order: int = 0) -> Any:
@@ -174,13 +188,13 @@ def around(osc: Oscillator, start: Any, order: int, balls: Balls) -> Any:
     >>> around(Oscillator("x", "sin(t)", 0, 1), balls.interval(Fraction(0), Fraction(1)), 1, balls).contains(1)
     True
     """
-    force = balls.evaluate(resting_force(osc), {})
+    force = balls.evaluate(at_wall(osc).steady, {})
     with balls_at(balls.bits):
         if not order:
-            return balls.evaluate(_forcing_tree(osc)[0], {"t": start}) - force
+            return balls.evaluate(_moving_part(osc)[0], {"t": start}) - force
         space = JetSpace(("s",), order, balls)
         moved = space.constant(start) + space.generators()[0]
-        jet = space.evaluate(_forcing_tree(osc)[0], {"t": moved})
+        jet = space.evaluate(_moving_part(osc)[0], {"t": moved})
         # log has a slope on paper where it is no number: nan goes on to it
         return jet.coefficient((order,)) * factorial(order) + 0 * jet.coefficient((0,))
 

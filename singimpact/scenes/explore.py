@@ -257,7 +257,7 @@ def _rebound(osc: Oscillator) -> tuple[str, str]:
     if not names_in(osc.restitution):
         text = "function rebound(velocity, w) {\n  return Math.abs(w[0] * velocity);\n}"
         return text, f"const law_of = ({GIVEN}, r) => ({{ w: [r], r }});"
-    source, trees = scalar(rho_of(osc.restitution), "v", "rebound")
+    source, trees = scalar(rho_of(osc.restitution), ("v",), "rebound")
     slope = formula(negate(substitute(derivative(osc.restitution, "v"), {"v": number(0)})), GIVEN)
     return translated(source)["rebound"], f"const law_of = ({GIVEN}) => ({{ w: [{_formulas(trees)}], r: {slope} }});"
 

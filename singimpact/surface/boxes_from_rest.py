@@ -125,8 +125,7 @@ class FlightFromRest(CarriedMotion):
 
     def bend(self, s: Any, height: Any, speed: Any) -> Any:
         """x'' at a time after the step began."""
-        forcing = self.equation.run("forcing", t=self.tau + self.time + s)[0]
-        return forcing - self.equation.run("force", x=height, xdot=speed)[0]
+        return self.equation.acceleration(self.tau + self.time + s, height, speed)
 
     def higher(self, s: Any, height: Any, speed: Any) -> list[Any]:
         """x''' and x'''' then."""

@@ -72,8 +72,8 @@ class RestFlights:
     def rest_matrix(self, tau: Array, t: Array, velocity: Array) -> Array:
         """The derivative of (F, x') by (tau, t) for one flight, shape (2, 2)."""
         by_speed, push = self.by_speed(tau, t)[0], float(self.acceleration(tau)[0])
-        pull = evaluate(self.model.force(), {"x": as_float(self.model.clearance), "xdot": velocity[0]}, DOUBLES)
-        there = float(evaluate(self.model.forcing(), {"t": tau[0] + t[0]}, DOUBLES) - pull)
+        state = {"x": as_float(self.model.clearance), "xdot": velocity[0], "t": tau[0] + t[0]}
+        there = float(evaluate(self.model.forcing(), state, DOUBLES) - evaluate(self.model.force(), state, DOUBLES))
         return np.array([[velocity[0] - push * by_speed[0], velocity[0]], [there - push * by_speed[1], there]])
 
     def y_and_gradient(self, points: Array) -> tuple[Array, Array, Array, Array]:

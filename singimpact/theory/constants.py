@@ -59,11 +59,11 @@ class ConstantRing(SymbolRing):
 def contact_of_constants(model: Oscillator, tau: Expression, j: int, order: int) -> Contact:
     """The jets of a model at an exact tau as polynomials in constants, or as rationals when they are."""
     a = acceleration_jet(model, to_sympy(tau), max(order - 1, j), SYMBOLIC)
-    return contact_in_sympy(dict(enumerate(a)), force_jet(model, j, order, SYMBOLIC), j, tau)
+    return contact_in_sympy(dict(enumerate(a)), force_jet(model, j, order, SYMBOLIC, tau=to_sympy(tau)), j, tau)
 
 
 def contact_in_sympy(
-    a: Mapping[int, Any], f: Mapping[tuple[int, int], Any], j: int, tau: Expression | None = None
+    a: Mapping[int, Any], f: Mapping[tuple[int, ...], Any], j: int, tau: Expression | None = None
 ) -> Contact:
     """Jets that are sympy expressions as polynomials in whatever they are made of; a_0..a_(j-1) are left out."""
     import sympy
@@ -77,7 +77,7 @@ def contact_in_sympy(
         j,
         ring,
         {k: jets.get(("a", k), zero) for k in a if k >= j},
-        {(i, k): value for (i, k), value in jets.items() if i != "a"},
+        {key: value for key, value in jets.items() if key[0] != "a"},
         tau,
     )
 
@@ -122,6 +122,8 @@ class LetteredModel:
             raise refuse("model", self.model, "an ImpactOscillator")
         if isinstance(self.keep, str) or not isinstance(self.keep, Sequence) or not self.keep:
             raise refuse("keep", self.keep, "a sequence of names of parameters")
+        if self.model.parametric:
+            raise refuse("keep", self.keep, "no names for a model in whose f t occurs; its series have numbers")
         require_known("parameter", self.keep, self.model.parameters)
         for name in self.keep:
             if TAKEN.fullmatch(name):

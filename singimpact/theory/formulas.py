@@ -399,7 +399,9 @@ def _exact_curve(where: Place, order: int, name: str) -> dict[int, Any] | None:
     if contact.ring is EXACT:
         curve = invariant_curve(contact, lambda_, order, rho)
         return {n: _shown(value) for n, value in getattr(curve, name).items()}
-    return _through_symbols(contact, lambda_, order, name, rho) if order <= LIMITS.constants else None
+    # the generic series has no symbols for derivatives of f by t
+    through = order <= LIMITS.constants and not where.model.parametric
+    return _through_symbols(contact, lambda_, order, name, rho) if through else None
 
 
 def _through_symbols(

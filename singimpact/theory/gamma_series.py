@@ -123,9 +123,9 @@ class _Solver:
         self._tangent()
         self._extend(0, self.zero)
 
-    def _shift(self, i: int, k: int) -> int:
-        """The number of levels by which X^i X'^k lies above a_j."""
-        return i * (self.j + 2) + k * (self.j + 1) - self.j
+    def _shift(self, i: int, k: int, m: int = 0) -> int:
+        """The number of levels by which X^i X'^k t^m lies above a_j."""
+        return i * (self.j + 2) + k * (self.j + 1) + m - self.j
 
     def _tangent(self) -> None:
         """The derivative of level 0 by tau_0, which is that of level m by tau_m."""
@@ -168,11 +168,24 @@ class _Solver:
                     total = total + self.a[k] * (self.tau_powers[q][level - (k - j)] * comb(k, q))
             coefficients.append(total)
         polynomial = self.polys.poly(coefficients)
-        for (i, k), value in self.force.items():
-            shift = self._shift(i, k)
+        for key, value in self.force.items():
+            shift = self._shift(*key)
             if shift <= level:
-                polynomial = polynomial + self._product(i, k, level - shift) * value
+                polynomial = polynomial + self._product_in_time(*key, level=level - shift) * value
         return polynomial
+
+    def _product_in_time(self, i: int, k: int, m: int = 0, *, level: int) -> Any:
+        """One level of (tau y)^i y'^k (1 + z tau)^m."""
+        if not m:
+            return self._product(i, k, level)
+        terms = [
+            self._product(i, k, level - n)
+            * self.polys.poly(
+                [self.tau_powers[q][n] * comb(m, q) if n < len(self.tau_powers[q]) else self.zero for q in range(m + 1)]
+            )
+            for n in range(level + 1)
+        ]
+        return sum(terms[1:], terms[0])
 
     def _product(self, i: int, k: int, level: int) -> Any:
         """One level of (tau y)^i y'^k."""

@@ -331,19 +331,21 @@ def _expanded(contact: Contact, order: int, restitution: Any, rho: Mapping[int, 
 def _flow(contact: Contact, order: int) -> tuple[Jet, Jet]:
     """x - c to order + 1 and x' to order, from (c + X, U) at t_*: jets in (t, X, U) of weights 1, j + 2, j + 1.
 
-    x'' = a_c(t_* + t) - (f(c + x, x') - f(c, 0)), by Picard's iteration: every round is right to one degree more.
+    x'' = a_c(t_* + t) - (f(c + x, x', t_* + t) - f(c, 0, t_* + t)), by Picard's iteration: every round is
+    right to one degree more.
     """
     j, ring = contact.order, contact.ring
     space = JetSpace(("t", "X", "U"), order + 1, ring, (1, j + 2, j + 1))
     t, start, launch = space.generators()
     low = space.to_order(order - 1)
+    clock = low.generators()[0]
     push = low.jet({(k, 0, 0): value for k, value in contact.a.items()})
     x, xdot = start + t * launch, launch.cut(order)
     for _ in range(order + 1):
         short, fast = x.cut(order - 1), xdot.cut(order - 1)
         force = low.jet({})
-        for (i, k), value in contact.f.items():
-            force = force + (short**i * fast**k).scaled(value)
+        for (i, k, *late), value in contact.f.items():
+            force = force + (short**i * fast**k * clock ** sum(late)).scaled(value)
         xdot = launch.cut(order) + (push - force).integral("t")
         x = start + xdot.integral("t")
     return x, xdot

@@ -3,7 +3,7 @@
 No equation is solved by iteration.  The flight from sigma that lands after t is X = c + t Y(z) at the time sigma + z t,
 so the unit interval carries the boundary value problem
 
-    Y'' = t [a(sigma + z t) - (f(c + t Y, Y') - f(c, 0))],    Y(0) = Y(1) = 0.
+    Y'' = t [a(sigma + z t) - (f(c + t Y, Y', sigma + z t) - f(c, 0, sigma + z t))],    Y(0) = Y(1) = 0.
 
 Part by part in the degree of (sigma, t) the right side is known, and two integrals in z give the next part.  Then
 v_c = Y'(0), and the impact velocity Y'(1) is v_c after the involution.  Y with both velocities is the certificate that
@@ -147,10 +147,11 @@ class _Flight:
         pairs = []
         if degree in self.contact.a:
             pairs.append((self._powers[degree], self.engine.constant(self.contact.a[degree])))
-        for (i, k), coefficient in self._force.items():
-            product = self._product(i, k, degree)
+        for (i, k, *late), coefficient in self._force.items():
+            m = sum(late)
+            product = self._product(i, k, degree - m)
             if product is not None:
-                pairs.append((product, coefficient))
+                pairs.append((self.engine.dot([(product, self._powers[m])]) if m else product, coefficient))
         return self.engine.dot([(self.t, self.engine.dot(pairs))])
 
     def _product(self, i: int, k: int, degree: int) -> Any:

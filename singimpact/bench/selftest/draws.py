@@ -119,7 +119,7 @@ def scales(osc: ImpactOscillator) -> Scales:
 def _at_rest(osc: ImpactOscillator, name: str) -> float:
     """df/dx or df/dx' at rest on the obstacle; 0 where it is not finite."""
     try:
-        value = evaluate(derivative(osc.force(), name), {"x": as_float(osc.clearance), "xdot": 0.0}, DOUBLES)
+        value = evaluate(derivative(osc.force(), name), {"x": as_float(osc.clearance), "xdot": 0.0, "t": 0.0}, DOUBLES)
     except (ArithmeticError, ValueError):
         return 0.0
     return float(value) if isfinite(value) else 0.0

@@ -212,7 +212,7 @@ def _flown(equation: Equation, state: tuple[Any, Any], horizon: float, bits: int
         length = bound[1]
         above = arb_poly([coefficients[0] - clearance, *coefficients[1:]])
         while True:
-            step = _bounded(equation, coefficients, (p, q), bound[0], radius, length, bits)
+            step = _bounded(equation, launch + s, coefficients, (p, q), (bound[0], radius), length, bits)
             if count == 1:
                 # (x - c)/s has no root on the step; s <= length times the bound of x' bounds x
                 over = arb_poly(coefficients[1:])(arb(0).union(step.length)) + arb(0, step.along[1])
@@ -273,6 +273,7 @@ def taylor(equation: Equation, t: Any, x: Any, u: Any, degree: int) -> list[Any]
         m, count = len(X) - 1, min(2 * len(X) - 2, degree - 1)  # X_0..X_m are known; count: residuals that are right
         slopes = [(k + 1) * X[k + 1] for k in range(m)]
         values = {"x": arb_series(X, prec=count), "xdot": arb_series(slopes, prec=count)}
+        values["t"] = arb_series([t, 1], prec=count)
         f, by_x, by_u = (_listed(series_, count) for series_ in equation.force.run(values))
         damped = not all(series_.is_zero() for series_ in by_u[1:])  # a ball round 0 is not 0
         for k in range(m - 1, count):
@@ -336,17 +337,18 @@ def _defect(equation: Equation, t: Any, X: list[Any], sums: tuple[Any, Any, Any]
     def box(centre: Any, width: Any) -> Any:
         return acb(centre + arb(0, _upper(width)), arb(0, _upper(width)))
 
-    f = equation.force.run({"x": box(X[0], sums[0](R)), "xdot": box(X[1], sums[1](R))})[0]
-    g = equation.forcing.run({"t": box(t, R)})[0]
-    inside = f - g
+    values = {"x": box(X[0], sums[0](R)), "xdot": box(X[1], sums[1](R)), "t": box(t, R)}
+    inside = equation.force.run(values)[0] - equation.forcing.run(values)[0]
     return _upper(sums[2](R)) + _upper(inside) if inside.is_finite() else None
 
 
-def _bounded(equation: Equation, X: list[Any], start: tuple[Any, Any], M: Any, R: Any, length: Any, bits: int) -> Step:
+def _bounded(
+    equation: Equation, t: Any, X: list[Any], start: tuple[Any, Any], disc: tuple[Any, Any], length: Any, bits: int
+) -> Step:
     """The step of at most a length on which the bounds p and q are shown to hold."""
     from flint import arb, arb_mat
 
-    slack, degree = arb(2) ** (-bits // 2), len(X) - 1
+    (M, R), slack, degree = disc, arb(2) ** (-bits // 2), len(X) - 1
     with balls_at(64):
         sums = _sums(X)
         for _ in range(60):
@@ -354,7 +356,7 @@ def _bounded(equation: Equation, X: list[Any], start: tuple[Any, Any], M: Any, R
                 name: centre + arb(0, _upper(total_(length) + slack))
                 for name, centre, total_ in zip(("x", "xdot"), X, sums, strict=False)
             }
-            _, by_x, by_u = equation.force.run(values)
+            _, by_x, by_u = equation.force.run(values | {"t": t + arb(0, _upper(length))})
             if by_x.is_finite() and by_u.is_finite():
                 matrix = arb_mat([[0, 1], [_upper(by_x), -arb(arb(by_u).lower())]])
                 grown = (matrix * length).exp()

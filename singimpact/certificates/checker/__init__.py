@@ -14,7 +14,19 @@ series made by `growing`), and `after_contact`.  `__main__` runs the program.
 
 from .files import SECONDS, check, digest_of, main
 from .formulas import Refused
-from .schema import KINDS, SCHEMA, TOUCHING, read
+from .schema import IN_TIME, KINDS, SCHEMA, TOUCHING, read
 from .sentences import sentence
 
-__all__ = ["KINDS", "SCHEMA", "SECONDS", "TOUCHING", "Refused", "check", "digest_of", "main", "read", "sentence"]
+__all__ = [
+    "IN_TIME",
+    "KINDS",
+    "SCHEMA",
+    "SECONDS",
+    "TOUCHING",
+    "Refused",
+    "check",
+    "digest_of",
+    "main",
+    "read",
+    "sentence",
+]

@@ -49,7 +49,7 @@ def rest(model: Model, tau: Any, v: Any, a: Any, r: Any) -> Any:
         return None
     window = size(4 * v / (a * (r - 1)))
     fast = within(2 * v)
-    pull = model.f(x=model.c().union(model.c() + v * window), xdot=fast) - model.g(t=tau.union(tau + window))
+    pull = -model.push(tau.union(tau + window), fast, model.c().union(model.c() + v * window))
     low, high = pull.lower(), pull.upper()
     if not low > 0:
         return None

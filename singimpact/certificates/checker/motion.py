@@ -29,7 +29,7 @@ HORIZON = 1e4  # of a flight
 
 
 class Model:
-    """x'' + f(x, x') = g(t), x >= c, and what an impact makes of a velocity; a parameter `over` may be a ball."""
+    """x'' + f(x, x', t) = g(t), x >= c, and what an impact makes of a velocity; a parameter `over` may be a ball."""
 
     def __init__(self, content: dict[str, Any], over: str | None = None, value: Any = None) -> None:
         self.content, self.over, self.value = content, over, value
@@ -56,17 +56,18 @@ class Model:
 
     def push(self, time: Any, velocity: Any, height: Any = None) -> Any:
         """x'', at the wall where no x is given."""
-        return self.g(t=time) - self.f(x=self.c() if height is None else height, xdot=velocity)
+        return self.g(t=time) - self.f(x=self.c() if height is None else height, xdot=velocity, t=time)
 
     def moved(self, *slopes: int) -> dict[str, Any]:
         """The number with its derivatives."""
         return {self.over: Dual(self.value, slopes)} if self.over else {}
 
-    def field(self, X: Sequence[Any], V: Sequence[Any]) -> list[Any]:
+    def field(self, places: Sequence[Any], time: Any) -> list[Any]:
         """f at x = X[0], and f_x psi + f_x' psi' of the other components psi, with f_p of the one by the number p."""
+        X, V = places
         if len(X) == 1:
-            return [self.f(x=X[0], xdot=V[0])]
-        found = self.f(x=Dual(X[0], X[1:]), xdot=Dual(V[0], V[1:]), **self.moved(0, 0, 1))
+            return [self.f(x=X[0], xdot=V[0], t=time)]
+        found = self.f(x=Dual(X[0], X[1:]), xdot=Dual(V[0], V[1:]), t=time, **self.moved(0, 0, 1))
         return [found.value, *found.slopes] if isinstance(found, Dual) else [found, *[0] * (len(X) - 1)]
 
     def forcing(self, time: Any, count: int) -> list[Any]:
@@ -103,13 +104,16 @@ def taylor(model: Model, time: Any, x: Sequence[Any], v: Sequence[Any], n: int) 
         [x[0], v[0]],
     )
     for k in range(n - 1):
-        f = model.f(x=arb_series(X, prec=k + 1), xdot=arb_series(derived(X), prec=k + 1))
+        clock = arb_series([time, 1], prec=k + 1)
+        f = model.f(x=arb_series(X, prec=k + 1), xdot=arb_series(derived(X), prec=k + 1), t=clock)
         X.append((forcing[0][k] - coefficients(f, k + 1)[k]) / ((k + 1) * (k + 2)))
     rows, count = [X], n - 1
     if x[1:]:
         units = [[arb_series([int(i == k)], prec=count) for k in range(len(x) - 1)] for i in (0, 1)]
         state = [[arb_series(series, prec=count), *unit] for series, unit in zip((X, derived(X)), units, strict=True)]
-        by_x, by_v, *by_number = (coefficients(series, count) for series in model.field(*state)[1:])
+        by_x, by_v, *by_number = (
+            coefficients(series, count) for series in model.field(state, arb_series([time, 1], prec=count))[1:]
+        )
     for i, start in enumerate(zip(x[1:], v[1:], strict=True)):
         psi, rate = list(start), [start[1]]
         for k in range(n - 1):
@@ -135,8 +139,9 @@ def defect(model: Model, time: Any, X: list[list[Any]], R: Any) -> Any:
         [acb(series[i] + within(bound[i]), within(bound[i])) for series, bound in zip(X, bounds, strict=True)]
         for i in (0, 1)
     ]
-    forcing = model.forcing(acb(time + within(R), within(R)), len(X))
-    misses = [acb(series) - acb(pull) for series, pull in zip(model.field(*places), forcing, strict=True)]
+    during = acb(time + within(R), within(R))
+    forcing = model.forcing(during, len(X))
+    misses = [acb(series) - acb(pull) for series, pull in zip(model.field(places, during), forcing, strict=True)]
     if not all(series.is_finite() for series in misses):
         return None
     return largest(size(series) + bound[2] for series, bound in zip(misses, bounds, strict=True))
@@ -147,7 +152,7 @@ def largest(numbers: Iterable[Any]) -> Any:
     return max((arb(part.upper()) for part in numbers), key=float)
 
 
-def lipschitz(model: Model, X: list[list[Any]], length: Any, slack: Any) -> tuple[Any, Any]:
+def lipschitz(model: Model, time: Any, X: list[list[Any]], length: Any, slack: Any) -> tuple[Any, Any]:
     """The largest sums of |derivatives by x, psi| and of |those by x', psi'| of a component of f, next to a step."""
     m, sums = len(X), [spread(series) for series in X]
     slopes = [[int(i == k) for k in range(2 * m)] for i in range(2 * m)]
@@ -158,7 +163,10 @@ def lipschitz(model: Model, X: list[list[Any]], length: Any, slack: Any) -> tupl
         ]
         for i in (0, 1)
     ]
-    rows = [series.slopes if isinstance(series, Dual) else [0] * (2 * m) for series in model.field(*places)]
+    rows = [
+        series.slopes if isinstance(series, Dual) else [0] * (2 * m)
+        for series in model.field(places, time + within(length))
+    ]
     A, B = (largest(sum((size(arb(slope)) for slope in row[i : i + m]), arb(0)) for row in rows) for i in (0, m))
     return A, B
 
@@ -186,7 +194,7 @@ def step(model: Model, time: Any, x: Sequence[Any], v: Sequence[Any], bits: int)
     length, R, M = arb(best[0]), arb(best[1]), best[2]
     slack = arb(2) ** (-bits // 2)
     for _ in range(60):
-        A, B = lipschitz(model, X, length, slack)
+        A, B = lipschitz(model, time, X, length, slack)
         K = M * R ** (1 - n) * (B * length + A * length * length / 2).exp() / n
         if K * length**n * (1 + length) < slack:
             return X, length, K

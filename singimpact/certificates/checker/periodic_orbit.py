@@ -116,6 +116,7 @@ def periodic_orbit(model: Model, content: dict[str, Any], bits: int) -> None:
     """Check that one orbit has its states in the balls that are written, that no other is near, and its multipliers."""
     states, k = content["states"], int(content["periods"])
     require_period(model.g, content["period"])
+    require_period(model.f, content["period"])
     numbers = [state[name] for state in states for name in ("tau", "v")]
     point, radii = ([ball(Fraction(number[field])) for number in numbers] for field in ("value", "radius"))
     orbits = Orbits(model, Formula(content["period"], model.g.parameters)() * k, bits)

@@ -1,4 +1,4 @@
-"""The period of g, checked in exact arithmetic."""
+"""The period of f and g in t, checked in exact arithmetic."""
 
 import ast
 from fractions import Fraction
@@ -7,7 +7,7 @@ from .formulas import Formula, need
 
 
 def require_period(g: Formula, period: str) -> None:
-    """Refuse a period that g is not shown to have: t is in sines of rate t + phase, rate period = 2 pi m."""
+    """Refuse a period that f or g is not shown to have: t is in sines of rate t + phase, rate period = 2 pi m."""
     length = Formula(period, g.parameters)
     turn = monomial(length, length.tree)
 
@@ -23,7 +23,7 @@ def require_period(g: Formula, period: str) -> None:
                 return (frequency[0] * turn[0] / 2).denominator == 1
         return all(seen(child) for child in ast.iter_child_nodes(node))
 
-    need("period", seen(g.tree), f"g = {g.text} is not shown to have the period {period}")
+    need("period", seen(g.tree), f"{g.text} is not shown to have the period {period}")
 
 
 def monomial(formula: Formula, node: ast.expr) -> tuple[Fraction, int] | None:

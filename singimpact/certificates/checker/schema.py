@@ -277,6 +277,10 @@ STATEMENTS: dict[str, Callable[[dict[str, Any]], Form]] = {
 """What the file of each statement says beside its schema, statement, model and digest."""
 
 
+IN_TIME = ("first impact", "periodic orbit", "chatter limit")
+"""Statements that may be on a model in whose f t occurs."""
+
+
 def require_statement(content: Any) -> None:
     """Refuse a file that is none of these statements."""
     only = f"only certificates {SCHEMA!r} of these are checked here: {', '.join(STATEMENTS)}"
@@ -292,3 +296,5 @@ def require_form(content: dict[str, Any]) -> None:
     used = re.findall(r"[A-Za-z_]\w*", " ".join(model[part] for part in ("f", "g", "clearance", "restitution")))
     unused = set(model.get("parameters", ())) - set(used)
     expect(not unused, f"model has the parameter {min(unused, default='')!r}, which it does not use")
+    moving = re.search(r"\bt\b", model["f"]) is not None and content["statement"] not in IN_TIME
+    expect(not moving, f"f = {model['f']} depends on t: of such a model only {', '.join(IN_TIME)} are checked here")

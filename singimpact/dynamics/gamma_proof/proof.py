@@ -193,6 +193,10 @@ def certified_gamma(
     >>> print(f"{float(found.threshold('2.4').value):.6f}")
     0.003454
     """
+    if osc.parametric:
+        raise InputError(
+            f"f = {osc.f} depends on t: gamma is certified for f in x and xdot alone; si.threshold takes digits="
+        )
     zero = _zero_ahead(osc, tau)
     ends = _ends(osc, restitution)
     wanted = None if reach is None else _rational("reach", reach)

@@ -71,7 +71,10 @@ class AnalyticFlow:
     def acceleration(self, tau: Any, order: int = 0) -> Any:
         """a_c, or its derivative of order 1, at tau."""
         if order:
-            return self.equation.run("forcing", t=tau)[order]
+            return self.equation.by_time(tau, self.number(Fraction(0)))
+        if self.equation.programs.parametric:
+            zero = self.number(Fraction(0))
+            return self.equation.acceleration(tau, zero, zero)
         with series_of_any_length():  # an orbit asks for a_c where it flies next
             return self.short.drive(tau)[0] - self.equation.at_wall()[0]
 
@@ -80,8 +83,7 @@ class AnalyticFlow:
         fast = (2 * v).upper()
         high = (2 * v * window).upper()
         zero = self.number(Fraction(0))
-        f = self.equation.run("force", x=zero.union(high), xdot=(-fast).union(fast))[0]
-        pull = f - self.equation.run("drive", t=tau.union(tau + window))[0]
+        pull = -self.equation.acceleration(tau.union(tau + window), zero.union(high), (-fast).union(fast))
         return pull.lower(), pull.upper()
 
     def first_hit(self, tau: Any, v: Any, limit: Any = None, removed: int = 1) -> FlownHit | None:
@@ -203,6 +205,8 @@ class ShortFlights:
 
     def hit(self, tau: Any, v: Any) -> tuple[Any, Any] | None:
         """Flight time and velocity of the first hit from a launch, both proved; None where the flight is not short."""
+        if self.equation.programs.parametric:  # the discs below are those of a force at rest
+            return None
         speed, g, force = float(v), self.drive(tau), self.equation.at_wall()
         a = g[0] - force[0]
         if not (a < 0 and v > 0 and speed > 0):

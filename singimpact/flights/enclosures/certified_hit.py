@@ -27,7 +27,7 @@ from singimpact.flights.enclosures.equation import (
 from singimpact.flights.enclosures.motion import CarriedMotion, Start
 from singimpact.flights.enclosures.tube import NearGraze, RootAtEnd, Tube, centre, divided, first_root
 from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.period import common_period
+from singimpact.oscillator.moving_number import period_over
 
 SHORTER = 0.93
 """Factor of a step at whose end the root may lie."""
@@ -260,9 +260,7 @@ def _phase(osc: Oscillator, tau: Expression, bits: int, names: tuple[str, ...]) 
 
 def _period_moves(osc: Oscillator, names: tuple[str, ...]) -> bool:
     """Whether the period depends, or may depend, on some numbers."""
-    if not names_in(osc.forcing(names)).intersection(names):
-        return False
-    period = common_period(osc.forcing(names))
+    period = period_over(osc, names)
     return period is None or bool(names_in(period).intersection(names))
 
 

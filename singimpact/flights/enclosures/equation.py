@@ -42,14 +42,16 @@ class Programs:
 
     Parameters
     ----------
-    linear : whether f is shown linear in x and x': its slopes have neither among their letters.
-    force : f, f_x, f_v. slopes : f_x, f_v, then f by each name. disc : f, f_x, f_v, then f by each name.
-    box : f_x, f_v, f_xx, f_xv, f_vv, then the mixed derivatives f_px, f_pv of each name.
+    linear : whether f is shown linear in x and x', and free of t: its slopes have none of them among their letters.
+    parametric : whether t occurs in f.
+    force : f, f_x, f_v. slopes : f_x, f_v, then f by each name. disc : f, f_x, f_v, then f by t and each name.
+    box : f_x, f_v, f_xx, f_xv, f_vv, then the mixed derivatives f_px, f_pv of t and each name.
     drive : g. forcing : g, g', then g by each name. rho : the rebound, its slope, then its derivative by each name.
     """
 
     names: tuple[str, ...]
     linear: bool
+    parametric: bool
     force: Program
     disc: Program
     box: Program
@@ -85,13 +87,14 @@ def programs_of(osc: Oscillator, names: tuple[str, ...]) -> Programs:
     """The programs of a model; `names` of its numbers stay letters (parameters, "clearance", "restitution")."""
     force, f, forcing, g, law, rho = recorded(osc, names)
     by_x, by_v = force.derivative(f, "x"), force.derivative(f, "xdot")
-    by_names = [force.derivative(f, name) for name in names]
+    by_names = [force.derivative(f, name) for name in ("t", *names)]
     second = [force.derivative(by_x, "x"), force.derivative(by_x, "xdot"), force.derivative(by_v, "xdot")]
     mixed = [force.derivative(slope, name) for slope in by_names for name in ("x", "xdot")]
     slopes = force.program([by_x, by_v])
     return Programs(
         names,
-        not any(operation in slopes.operations for operation in (("name", ("x",)), ("name", ("xdot",)))),
+        not osc.parametric and not any(("name", (name,)) in slopes.operations for name in ("x", "xdot")),
+        osc.parametric,
         force.program([f, by_x, by_v]),
         force.program([f, by_x, by_v, *by_names]),
         force.program([by_x, by_v, *second, *mixed]),
@@ -122,8 +125,17 @@ class Equation:
             self._ready[key] = getattr(self.programs, kind).prepared(self.numbers)
         return self._ready[key](values)  # type: ignore[no-any-return]
 
+    def acceleration(self, t: Any, z: Any, v: Any) -> Any:
+        """x'' at a time, at x - c = z and x' = v."""
+        return self.run("drive", t=t)[0] - self.run("force", x=z, xdot=v, t=t)[0]
+
+    def by_time(self, t: Any, v: Any) -> Any:
+        """x'' by t, at x = c and x' = v."""
+        slope = self.run("forcing", t=t)[1]
+        return slope - self.run("disc", x=v * 0, xdot=v, t=t)[3] if self.programs.parametric else slope
+
     def at_wall(self) -> list[Any]:
-        """f, f_x and f_v at rest on the wall, at the working precision; where f is linear they are all of it."""
+        """f, f_x and f_v at rest on the wall, where f is free of t; they are all of it where f is linear."""
         key = "wall", bits_of_balls()
         if key not in self._ready:
             import flint

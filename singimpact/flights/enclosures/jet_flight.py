@@ -252,6 +252,8 @@ class _JetFlight:
         self.tau, self.v0, numbers = box_of(osc, launch, bits)
         if not self.v0 > 0:
             raise Refused("the launch velocity is not shown positive")
+        if osc.parametric:
+            raise Refused("second derivatives of flights are not enclosed where t occurs in f")
         self.equation, self.time = Equation(jet_programs(osc, self.name), numbers), arb(0)
         zero, one = arb(0), arb(1)
         self.z: Jet = jet({}, zero)

@@ -100,8 +100,7 @@ class CarriedMotion:
             self.D = [tau - self.middle_tau, v - self.middle[1], *(deviations[name] for name in names)]
             self.C = list(self.full)
         if clocked:
-            zero = v * 0
-            push = self.equation.run("forcing", t=tau)[0] - self.equation.run("force", x=zero, xdot=v)[0]
+            push = self.equation.acceleration(tau, v * 0, v)
             self.earlier = -v, -push  # of the state at the time of the launch, by a later launch
             self.apart = upper(tau - self.middle_tau)
 
@@ -268,10 +267,7 @@ class CarriedMotion:
         total = self.time + root
         if not self.by:
             return total, velocity, []
-        f, g = (
-            self.equation.run("force", x=velocity * 0, xdot=velocity)[0],
-            self.equation.run("forcing", t=self.tau + total)[0],
-        )
+        push = self.equation.acceleration(self.tau + total, velocity * 0, velocity)
         pairs: list[Pair] = []
         for value, slope in self.by:
             if not self.launched:
@@ -282,7 +278,7 @@ class CarriedMotion:
                 delay = -divided(value, slope, 1)[0](root) / rate
             else:
                 delay = -value(root) / velocity
-            pairs.append((delay, slope(root) + (g - f) * delay))
+            pairs.append((delay, slope(root) + push * delay))
         by = self._images(self.full, pairs)
         if self.coarse is None:
             return total, velocity, by
@@ -350,7 +346,7 @@ class CarriedMotion:
         own, over = narrowed(wider, *self.own), self.met(wider)
         if not over.speed < 0:
             return here
-        push = self.equation.run("forcing", t=over.time)[0] - self.equation.run("force", x=s * 0, xdot=over.speed)[0]
+        push = self.equation.acceleration(over.time, s * 0, over.speed)
         time, fast = own, self.own[1](own)
         for (by_height, by_speed), size in zip(over.columns, self.D, strict=True):
             late = -by_height / over.speed

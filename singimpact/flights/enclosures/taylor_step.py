@@ -138,7 +138,7 @@ def _made(
         length, R, bounds = widest_disc(X, defects, bits, None if last is None else last.radius)
         if most is not None and length > most:
             length = most
-        return _bounded(equation, (X, psi), drives, sums, (length, R, bounds), bits)
+        return _bounded(equation, state[0], (X, psi), drives, sums, (length, R, bounds), bits)
 
 
 def coefficients(equation: Equation, state: tuple[Any, Any, Any], degree: int, removed: int = 1) -> list[Any]:
@@ -160,7 +160,9 @@ def coefficients(equation: Equation, state: tuple[Any, Any, Any], degree: int, r
         count = min(2 * m, degree - 1)
         f, by_x, by_v = (
             listed(series, count)
-            for series in equation.run("force", x=arb_series(X, prec=count), xdot=arb_series(V, prec=count))
+            for series in equation.run(
+                "force", x=arb_series(X, prec=count), xdot=arb_series(V, prec=count), t=arb_series([t, 1], prec=count)
+            )
         )
         constant = all(coefficient.is_zero() for coefficient in by_v[1:])
         for k in range(m - 1, count):
@@ -207,15 +209,15 @@ def column(equation: Equation, t: Any, X: list[Any], launch: Column, degree: int
 
     V = [(k + 1) * coefficient for k, coefficient in enumerate(X[1:])]
     count = degree - 1
-    _, by_x, by_v, *by_names = (
+    clock = arb_series([t, 1], prec=count)
+    _, by_x, by_v, *pulls = (
         listed(series, count)
-        for series in equation.run("disc", x=arb_series(X, prec=count), xdot=arb_series(V, prec=count))
+        for series in equation.run("disc", x=arb_series(X, prec=count), xdot=arb_series(V, prec=count), t=clock)
     )
     driven = [arb(0)] * count
     if launch.drive >= 0:
-        driven = listed(equation.run("forcing", t=arb_series([t, 1], prec=count))[1 + launch.drive], count)
-        if launch.drive:
-            driven = [a - b for a, b in zip(driven, by_names[launch.drive - 1], strict=True)]
+        driven = listed(equation.run("forcing", t=clock)[1 + launch.drive], count)
+        driven = [a - b for a, b in zip(driven, pulls[launch.drive], strict=True)]
     return response(by_x, by_v, driven, launch.start)
 
 
@@ -307,15 +309,14 @@ def _defects(
     def at(P: list[Any], totals: tuple[Any, Any, Any], order: int) -> Any:
         return around(P[order], totals[order](R))
 
-    f, by_x, by_v, *by_names = equation.run("disc", x=at(X, sums[0], 0), xdot=at(X, sums[0], 1))
-    g, *forced = equation.run("forcing", t=around(t, R))
+    clock = around(t, R)
+    f, by_x, by_v, *pulls = equation.run("disc", x=at(X, sums[0], 0), xdot=at(X, sums[0], 1), t=clock)
+    g, *forced = equation.run("forcing", t=clock)
     inside = [f - g]
     for P, totals, drive in zip(psi, sums[1:], drives, strict=True):
         value = by_x * at(P, totals, 0) + by_v * at(P, totals, 1)
         if drive >= 0:
-            value -= forced[drive]
-        if drive > 0:
-            value += by_names[drive - 1]
+            value += pulls[drive] - forced[drive]
         inside.append(value)
     if not all(acb(value).is_finite() for value in inside):
         return None
@@ -324,6 +325,7 @@ def _defects(
 
 def _bounded(
     equation: Equation,
+    t: Any,
     series: tuple[list[Any], list[list[Any]]],
     drives: list[int],
     sums: list[Any],
@@ -338,7 +340,7 @@ def _bounded(
     power = R ** (1 - n)
     for _ in range(STEP.boxes):
         names = {name: X[order] + ball(sums[0][order](length) + slack) for order, name in enumerate(("x", "xdot"))}
-        by_x, by_v, *others = equation.run("box", **names)
+        by_x, by_v, *others = equation.run("box", **names, t=t + ball(length))
         A, B = upper(arb(by_x)), upper(arb(by_v))
         if A.is_finite() and B.is_finite():
             grown = (B * length + A * length**2 / 2).exp() / n
@@ -357,7 +359,7 @@ def _bounded(
 
 
 def _second_derivatives(parts: list[Any]) -> tuple[Any, list[Any]]:
-    """|f_xx| + 2 |f_xv| + |f_vv|, and |f_px| + |f_pv| of each name."""
+    """|f_xx| + 2 |f_xv| + |f_vv|, and |f_px| + |f_pv| of t and each name."""
     from flint import arb
 
     sizes = [upper(arb(part)) for part in parts]
@@ -370,5 +372,5 @@ def _bend(
 ) -> Any:
     """The rest that f_x, f_v and f_p along P leave in the equation of a column, over s^(n-1)."""
     along = upper(P[0]) + sums[0](length) + upper(P[1]) + sums[1](length)
-    total = second * along + (mixed[drive - 1] if drive > 0 else 0)
+    total = second * along + (mixed[drive] if drive >= 0 else 0)
     return upper(total * bound * (1 + length) * length)

@@ -184,5 +184,4 @@ def _falls(motion: CarriedMotion, during: Any) -> bool:
 def _acceleration(motion: CarriedMotion, during: Any) -> Any:
     """z'' at times since the beginning of the step."""
     z, v = (part(during) for part in motion.members)
-    forcing = motion.equation.run("forcing", t=motion.tau + motion.time + during)[0]
-    return forcing - motion.equation.run("force", x=z, xdot=v)[0]
+    return motion.equation.acceleration(motion.tau + motion.time + during, z, v)

@@ -65,6 +65,8 @@ def kept_up(osc: Oscillator, v: Array) -> Array:
 @lru_cache(maxsize=256)
 def fastest_kept(osc: Oscillator) -> float:
     """The largest launch velocity between proved barriers; 0 without any."""
+    if osc.parametric:
+        return 0.0
     clearance, left = as_float(osc.clearance), Operations(osc)
 
     def force(z: Array, speed: Array) -> Array:

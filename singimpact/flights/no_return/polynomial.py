@@ -54,7 +54,7 @@ def never_turns(osc: Oscillator, z: Array, u: Array) -> Array:
     >>> never_turns(osc, np.array([5.0, 0.1]), np.array([30.0, 30.0])).tolist()
     [True, False]
     """
-    degree = degree_of(osc.force())
+    degree = None if osc.parametric else degree_of(osc.force())
     extremes = None if degree is None or degree > PROOF.degree else extremes_of_forcing(osc)
     if degree is None or extremes is None:
         return np.zeros(z.shape, dtype=bool)

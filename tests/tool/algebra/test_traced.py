@@ -93,8 +93,8 @@ def test_a_defined_function_is_that_of_numpy(name):
         (lambda x, xdot: None, "the symbol 'None' has no value"),
         (lambda x, xdot: x / 0, "divides by zero"),
         (lambda x, xdot: x + missing, "missing"),  # noqa: F821
-        (lambda x, xdot, other: x, "a function of x, xdot, or of some of them"),
-        (lambda *x: x[0], "a function of x, xdot"),
+        (lambda x, xdot, t, other: x, "a function of x, xdot, t, or of some of them"),
+        (lambda *x: x[0], "a function of x, xdot, t"),
         (lambda x, xdot: grown(x), "formula has more than 10000 parts"),
         (lambda x, xdot: x + float("inf"), "inf"),
         (max, "signature"),

@@ -75,7 +75,7 @@ REFUSED = [
     ({"parameters": {"t": 1, "omega": 1}}, "parameter name = 't'"),
     ({"parameters": [1]}, "parameters = [1]"),
     ({"f": "y"}, "'y' has no value"),
-    ({"f": "cos(t)"}, "'t' has no value"),
+    ({"f": "cos(s)"}, "'s' has no value"),
     ({"g": "x"}, "'x' has no value"),
     ({"g": "__import__('os')"}, "unknown function"),
     ({"period": 0}, "period = 0"),

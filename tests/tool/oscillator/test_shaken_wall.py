@@ -87,7 +87,6 @@ def test_a_wall_at_rest_only_moves_the_clearance():
 @pytest.mark.parametrize(
     ("given", "told"),
     [
-        (("x**3", "0", "sin(t)", "1/2"), "with a wall that moves is not accepted: give f linear in x and xdot"),
         (("x", "0", "abs(sin(t))", "1/2"), "is not smooth where abs changes sign"),
         (("x", "0", "x*t", "1/2"), "the symbol 'x' has no value"),
         (("x", "0", "sin(t)", "1/2", {"b": 1}), "unknown parameter 'b'"),

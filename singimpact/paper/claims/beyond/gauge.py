@@ -68,7 +68,7 @@ def _routes_agree(damping: Fraction, square: Fraction) -> bool:
     """Whether v_c of a linear model is the closed form of the ball, for one jet of a_c of contact order 1."""
     jet = {k: Fraction((-1) ** k * (k + 2), k + 1) for k in range(1, ORDER)}
     stiffness = damping**2 + square
-    linear = {pair: value for pair, value in (((1, 0), stiffness), ((0, 1), 2 * damping)) if value}
+    linear: dict[tuple[int, ...], Any] = {(1, 0): stiffness, (0, 1): 2 * damping}
     direct = sheet(Contact(1, RATIONALS, jet, linear), ORDER).v
     return all(value == 0 for value in (direct - _of_the_ball(jet, damping, square)).terms.values())
 
