@@ -308,7 +308,7 @@ class ImpactOscillator(Oscillator):
         return certified_gamma(self, tau, reach=reach, restitution=restitution)
 
     def periodic(
-        self, n: Any, k: int, start: Any = None, *, v: Any = None, digits: int | None = None
+        self, n: Any, k: int | None = None, start: Any = None, *, v: Any = None, digits: int | None = None
     ) -> PeriodicOrbits:
         """The periodic orbits of n impacts in k periods of the forcing.
 

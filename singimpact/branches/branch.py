@@ -8,16 +8,17 @@ import numpy as np
 
 from singimpact.algebra.numbers import Array, as_float, constant
 from singimpact.branches.branch_walk import BranchWalk
+from singimpact.branches.closing import Closing
 from singimpact.branches.events import KINDS, Event, own_events
 from singimpact.branches.orbit_curve import SETTINGS, places
 from singimpact.branches.orbits import PeriodicOrbit
-from singimpact.branches.solutions import closing_of, orbit_of
+from singimpact.branches.solutions import closing_of, orbit_of, point_of
 from singimpact.inputs import InputError, checked_keywords, refuse, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION, value_of, with_number
 from singimpact.result import Result, numbered
 
-POINTS = ("parameter", "tau", "v", "stable", "visible", "multipliers")
+POINTS = ("parameter", "period", "tau", "v", "stable", "visible", "multipliers")
 """Arrays of a branch, a row for each of its points."""
 
 
@@ -29,7 +30,9 @@ class Branch(Result):
     ----------
     oscillator : the model where the branch began. over : the parameter. n, k : impacts in k periods.
     parameter : shape (m,). tau, v : shape (m, n), states after the impacts; of orbits without impact x and x' at time
-        0, shape (m, 1). multipliers : shape (m, 2), the larger first. visible : shape (m,), bool.
+        0, shape (m, 1). multipliers : shape (m, 2), the larger first; of limit cycles (m, 1). visible : shape
+        (m,), bool.
+    period : the time after which each closes, shape (m,).
     events : in the order of the branch. A point of the branch stands at each that is no touch of the wall, and between
         any two. notes : where and why it ends, and where rounding leaves events open.
     """
@@ -45,6 +48,7 @@ class Branch(Result):
     visible: Array
     events: tuple[Event, ...]
     notes: tuple[str, ...]
+    period: Array
 
     def __len__(self) -> int:
         return int(self.parameter.size)
@@ -65,8 +69,12 @@ class Branch(Result):
     def orbit(self, index: int) -> PeriodicOrbit:
         """The orbit at a point."""
         closing = closing_of(self.oscillator, self.n, self.k, (self.over,))
-        at = np.concatenate([self.tau[index], self.v[index], self.parameter[index : index + 1 or None][:1]])
-        return orbit_of(closing, at)
+        parameter = self.parameter[index : index + 1 or None][:1]
+        if isinstance(closing, Closing):
+            states = closing.point(self.tau[index], self.v[index], float(self.period[index]))
+        else:
+            states = np.concatenate([self.tau[index], self.v[index]])
+        return orbit_of(closing, np.append(states, parameter))
 
     def as_dict(self) -> dict[str, Any]:
         """n, k, the arrays of points, events and notes."""
@@ -88,17 +96,24 @@ class Branch(Result):
         """One row for each point: parameter, states, multipliers, stable, visible."""
         multipliers = {
             f"multiplier_{i + 1}_{name}": part(self.multipliers[:, i])
-            for i in (0, 1)
+            for i in range(self.multipliers.shape[1])
             for name, part in (("re", np.real), ("im", np.imag))
         }
         flags = {name: getattr(self, name).astype(int) for name in ("stable", "visible")}
-        return {self.over: self.parameter} | numbered("tau", self.tau) | numbered("v", self.v) | multipliers | flags
+        cycles = {"period": self.period} if self.multipliers.shape[1] == 1 else {}  # of others the forcing has it
+        return (
+            {self.over: self.parameter}
+            | cycles
+            | numbered("tau", self.tau)
+            | numbered("v", self.v)
+            | multipliers
+            | flags
+        )
 
     def __repr__(self) -> str:
         low, high = (float(end) for end in (self.parameter.min(), self.parameter.max()))
-        lines = [
-            f"<branch of ({self.n}, {self.k}) orbits, {len(self)} points, {self.over} from {low:.6g} to {high:.6g}"
-        ]
+        cycles = f"limit cycles, n = {self.n}" if self.multipliers.shape[1] == 1 else f"({self.n}, {self.k}) orbits"
+        lines = [f"<branch of {cycles}, {len(self)} points, {self.over} from {low:.6g} to {high:.6g}"]
         lines += [f"  {event!r}" for event in self.events]
         return "\n".join([*lines, *(f"  {note}" for note in self.notes)]) + ">"
 
@@ -180,12 +195,13 @@ def branch(
         closing.n,
         closing.k,
         at[:, -1],
-        at[:, :n],
+        np.array([closing.times(row) for row in at]) if isinstance(closing, Closing) else at[:, :n],
         at[:, n : 2 * n],
         np.array([row.multipliers for row in rows]),
         np.array([row.visible for row in rows]),
         tuple(events),
         tuple(walk.notes),
+        np.array([closing.k * closing.period(row) for row in at]),
     )
     return _confirmed(curve, at)
 
@@ -217,7 +233,7 @@ def _checked(orbit: PeriodicOrbit) -> tuple[Oscillator, Array]:
         values = {CLEARANCE: float(orbit.x[0])}
         end = closing.family.end(values, span, float(orbit.v[0]), -span)
         return orbit.oscillator, np.array([float(orbit.x[0]) + end.place[0], end.place[1]])
-    return orbit.oscillator, np.concatenate([np.asarray(row, dtype=float) for row in (orbit.tau, orbit.v)])
+    return orbit.oscillator, point_of(closing_of(orbit.oscillator, int(orbit.n), orbit.k, ()), orbit)
 
 
 def interval(over: str, between: Any, value: float) -> tuple[float, float]:

@@ -15,7 +15,7 @@ from singimpact.branches.continuation import Curve, Point, cubic_between, null_p
 from singimpact.branches.events.kind import EventKind
 from singimpact.branches.events.meeting_branches import BRANCH_POINT, PITCHFORK, TRANSCRITICAL
 from singimpact.branches.orbits import PeriodicOrbit
-from singimpact.branches.solutions import AnyClosing, closing_of, orbit_of, orbit_period
+from singimpact.branches.solutions import AnyClosing, closing_of, orbit_of, point_of
 from singimpact.branches.step_search import Crossing, EventTests, Key, Node, StepSearch
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import CLEARANCE
@@ -27,13 +27,20 @@ APART = 1e-3
 
 
 def states_of(orbit: PeriodicOrbit) -> Array:
-    return np.concatenate([np.asarray(orbit.tau, dtype=float), np.asarray(orbit.v, dtype=float)])
+    return point_of(closing_of(orbit.oscillator, int(orbit.n), orbit.k, ()), orbit)
 
 
-def _closed(event: PeriodicOrbit, n: int, point: Array) -> PeriodicOrbit:
+def _twice(once: Closing, twice: Closing, at: Array) -> Array:
+    """The states of an orbit and its repetition as unknowns of one of twice as many impacts."""
+    n, times, span = once.n, once.times(at), once.k * once.period(at)
+    return twice.point(np.concatenate([times, times + span]), np.tile(at[n : 2 * n], 2), 2 * span)
+
+
+def _closed(event: PeriodicOrbit, n: int, times: Array, speeds: Array) -> PeriodicOrbit:
     """The orbit next to a point at the event's model; the event itself closes it already, up to rounding."""
     closing = closing_of(event.oscillator, n, event.k, ())
     assert isinstance(closing, Closing)
+    point = closing.point(times, speeds, event.period)
     found = closing.newton(point)
     return orbit_of(closing, point if found is None else found[0])
 
@@ -48,22 +55,18 @@ def without_impact(orbit: PeriodicOrbit) -> PeriodicOrbit:
         end = closing.family.end({CLEARANCE: _wall(osc)}, float(times[0]), 0.0, -float(times[0]))
         return orbit_of(closing, np.array([_wall(osc) + end.place[0], end.place[1]]))
     others = [(at + 1 + i) % n for i in range(n - 1)]
-    span = orbit.k * orbit_period(orbit)
+    span = orbit.period
     later = [times[i] + (span if i <= at else 0.0) for i in others]
-    return _closed(orbit, n - 1, np.concatenate([later, speeds[others]]))
+    return _closed(orbit, n - 1, np.array(later), speeds[others])
 
 
 def with_impact(orbit: PeriodicOrbit) -> PeriodicOrbit:
     n = int(orbit.n)
     times, speeds = np.asarray(orbit.tau, dtype=float), np.asarray(orbit.v, dtype=float)
     if n == 0:
-        return _closed(orbit, 1, np.array([times[0], 0.0]))
+        return _closed(orbit, 1, times[:1], np.zeros(1))
     flight, time = touching_flight(orbit)
-    return _closed(
-        orbit,
-        n + 1,
-        np.concatenate([np.insert(times, flight + 1, times[flight] + time), np.insert(speeds, flight + 1, 0.0)]),
-    )
+    return _closed(orbit, n + 1, np.insert(times, flight + 1, times[flight] + time), np.insert(speeds, flight + 1, 0.0))
 
 
 def touching_flight(orbit: PeriodicOrbit) -> tuple[int, float]:
@@ -81,13 +84,14 @@ def doubled(orbit: PeriodicOrbit, over: str, parameter: float) -> list[PeriodicO
         return []
     once = closing_of(orbit.oscillator, n, orbit.k, ())
     at = states_of(orbit)
+    assert isinstance(once, Closing)
     loop = once.at(at)
     # the eigenvector of -1: the doubled orbit alternates along it
     vector = np.linalg.svd(loop.slope[:, : 2 * n] - 2 * loop.wrap)[2][-1]
     osc = orbit.oscillator
-    twice: AnyClosing = closing_of(osc, 2 * n, 2 * orbit.k, (over,))
-    span = orbit.k * orbit_period(orbit)
-    point = np.concatenate([at[:n], at[:n] + span, at[n:], at[n:], [parameter]])
+    twice = closing_of(osc, 2 * n, 2 * orbit.k, (over,))
+    assert isinstance(twice, Closing)
+    point = np.append(_twice(once, twice, at), parameter)
     moved = np.concatenate([vector[:n], -vector[:n], vector[n:], -vector[n:], [0.0]])
     scales = twice.scales(point)
     scales[-1] = max(abs(parameter), 1e-3)
@@ -164,8 +168,11 @@ def halves(closing: AnyClosing, at: Array) -> Array:
         values = closing.launch(at)
         end = closing.family.end(values, 0.0, float(at[1]), closing.span(at, 0) / 2)
         return np.asarray((end.place - np.array([0.0, at[1]])) / scales[:2])
-    period = closing.family.period(closing.values(at)).value
-    times, speeds = np.diff(at[:n].reshape(2, -1), axis=0)[0], np.diff(at[n : 2 * n].reshape(2, -1), axis=0)[0]
+    period = closing.period(at)
+    times, speeds = (
+        np.diff(closing.times(at).reshape(2, -1), axis=0)[0],
+        np.diff(at[n : 2 * n].reshape(2, -1), axis=0)[0],
+    )
     return np.concatenate([(times - k // 2 * period) / scales[0], speeds / scales[n]])
 
 
@@ -188,11 +195,11 @@ def _doubling(search: StepSearch, crossing: Crossing, equal: bool) -> BranchPoin
     near = min(low, high, key=lambda at: float(np.linalg.norm(halves(closing, at))))
     n = closing.n
     half = closing_of(closing.family.osc, n // 2, closing.k // 2, closing.over)
-    shift = closing.k // 2 * closing.family.period(closing.values(near)).value if n else 0.0
     guess = near
-    if n:
-        times, speeds = (near[: n // 2] + near[n // 2 : n] - shift) / 2, near[n : 2 * n].reshape(2, -1).mean(axis=0)
-        guess = np.concatenate([times, speeds, near[2 * n :]])
+    if isinstance(closing, Closing) and isinstance(half, Closing):
+        shift, both = closing.k // 2 * closing.period(near), closing.times(near)
+        times, speeds = (both[: n // 2] + both[n // 2 :] - shift) / 2, near[n : 2 * n].reshape(2, -1).mean(axis=0)
+        guess = np.concatenate([half.point(times, speeds, shift), near[2 * n :]])
     places = [*range(n // 2), *range(n, n + n // 2), 2 * n] if n else [0, 1, 2]
     sizes = scales[places]
     curve = Curve(Equations(half), sizes, 1.0)
@@ -219,10 +226,8 @@ def _doubling(search: StepSearch, crossing: Crossing, equal: bool) -> BranchPoin
             break
     root = latest[0]
     at = root
-    if n:
-        period = half.family.period(half.values(root)).value
-        m = n // 2
-        at = np.concatenate([root[:m], root[:m] + closing.k // 2 * period, root[m:n], root[m:n], root[n:]])
+    if isinstance(closing, Closing) and isinstance(half, Closing):
+        at = np.concatenate([_twice(half, closing, root), root[n:]])
     away = np.linalg.norm((at - (low + high) / 2) / scales)
     width = np.linalg.norm((high - low) / scales)
     if not away <= 2 * width:

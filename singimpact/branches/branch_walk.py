@@ -136,8 +136,7 @@ class BranchWalk(OrbitCurve):
         """Why flights have no value just beyond a point."""
         if not isinstance(self.closing, Closing):
             return ""
-        values = self.closing.values(where.at)
-        period = self.closing.family.period(values).value
+        period = self.closing.period(where.at)
         times = [flight[3] for flight in self.closing.flights(where.at)]
         if min(times) < 1e-3 * period:
             return "two impacts meet: a flight shrinks to nothing"

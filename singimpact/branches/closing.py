@@ -10,7 +10,7 @@ An orbit without impact has conditions of its own, `FreeClosing`.
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import sqrt
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
@@ -26,6 +26,8 @@ CANCELLED = 1e-6
 """A determinant that is smaller beside its terms has lost six digits of the product of the multipliers."""
 SETTLED = 1e-9
 """The last step of Newton's method for the time of a minimum, of that time."""
+Flown = tuple[float, float, float, float]
+"""Launch in the first period, periods before it, velocity and flight time."""
 Turn = tuple[float, float]
 """A local minimum of x - c in a flight: its time after the launch, and x - c there."""
 
@@ -62,11 +64,15 @@ class Loop:
     miss : x(T_i) - c and rho(x'(T_i)) - v_{i+1} of each flight, shape (2n,).
     slope : its derivatives by tau_1 ... tau_n, v_1 ... v_n, and the numbers that move, shape (2n, 2n + numbers).
     wrap : the part of the first 2n columns by which the last flight ends at the first state.
+    clocked : False of a limit cycle, whose det J(mu) has the one zero that is not trivial.
+    rounded : whether a cycle grazes: det J(mu), which has the factor v, is rounding.
     """
 
     miss: Array
     slope: Array
     wrap: Array
+    clocked: bool = True
+    rounded: bool = False
 
     def determinant(self, multiplier: float) -> float:
         """det(J(mu)), which vanishes where mu is a multiplier of the orbit; J(1) is the slope."""
@@ -92,8 +98,10 @@ class Loop:
         if not np.isfinite(size):
             return np.full(2, np.nan, dtype=complex)
         # a_2 = 0: the last flight ends in a graze, whose multiplier is infinite
-        if abs(two) <= 1e-14 * size:
+        if self.clocked and abs(two) <= 1e-14 * size:
             return np.array([np.inf, -zero / one if one else np.nan], dtype=complex)
+        if not self.clocked:
+            return np.array([-zero / one if one and not self.rounded else np.nan], dtype=complex)
         root = np.sqrt(complex(one * one - 4 * zero * two))
         far = (
             -one - root if one > 0 else -one + root
@@ -117,18 +125,40 @@ class Closing:
     n: int
     k: int
 
+    clocked: ClassVar[bool] = True
+
     @property
     def over(self) -> tuple[str, ...]:
         """Names of the free parameters."""
         return self.family.over
 
+    def times(self, point: Array) -> Array:
+        """The times of the impacts."""
+        return point[: self.n]
+
+    def period(self, point: Array) -> float:
+        """The period of the forcing."""
+        return self.family.period(self.values(point)).value
+
+    def point(self, times: Array, speeds: Array, span: float) -> Array:  # noqa: ARG002
+        """Unknowns of an orbit from its states and the time after which it closes."""
+        return np.concatenate([times, speeds])
+
+    def grazes(self, point: Array) -> bool:  # noqa: ARG002
+        """Whether the derivatives are rounding, which they are where a limit cycle grazes."""
+        return False
+
+    def _slopes_of_period(self, point: Array) -> Array:
+        """Derivatives of the period of the forcing by the numbers of the family."""
+        return np.array(self.family.period(self.values(point)).slopes) if self.clocked else np.zeros(len(self.over))
+
     def values(self, point: Array) -> dict[str, float]:
         """The free parameters."""
         return dict(zip(self.family.over, point[2 * self.n :].tolist(), strict=True))
 
-    def flights(self, point: Array) -> list[tuple[float, float, float, float]]:
-        """Launch in the first period, periods before it, velocity and flight time, of each flight."""
-        n, period = self.n, self.family.period(self.values(point)).value
+    def flights(self, point: Array) -> list[Flown]:
+        """All flights, the last one to the first impact k periods later."""
+        n, period = self.n, self.period(point)
         times, speeds = [*point[:n].tolist(), float(point[0]) + self.k * period], point[n : 2 * n].tolist()
         before = [float(np.floor(time / period)) for time in times[:n]]
         return [(times[i] - before[i] * period, before[i], speeds[i], times[i + 1] - times[i]) for i in range(n)]
@@ -136,7 +166,7 @@ class Closing:
     def at(self, point: Array) -> Loop:
         """The conditions and their derivatives at a point."""
         n, over, values = self.n, self.family.over, self.values(point)
-        slopes = np.array(self.family.period(values).slopes)
+        slopes = self._slopes_of_period(point)
         miss, slope, wrap = np.zeros(2 * n), np.zeros((2 * n, 2 * n + len(over))), np.zeros((2 * n, 2 * n))
         for i, (launch, before, v, time) in enumerate(self.flights(point)):
             end = self.family.end(values, launch, v, time)
@@ -145,21 +175,22 @@ class Closing:
             miss[2 * i], miss[2 * i + 1] = end.place[0], velocity - point[n + after]
             # rho changes the second condition, and so every derivative in its row, by its slope
             scale = np.array([1.0, factor])
-            slope[2 * i : 2 * i + 2, i] += scale * (end.by_tau - end.by_time)
+            if i or self.clocked:  # the first impact of a cycle stays at time 0
+                slope[2 * i : 2 * i + 2, i] += scale * (end.by_tau - end.by_time)
             slope[2 * i : 2 * i + 2, n + i] += scale * end.by_v
             by_next = np.zeros((2, 2 * n))
             by_next[:, after] = scale * end.by_time
             by_next[1, n + after] = -1.0
             slope[2 * i : 2 * i + 2, : 2 * n] += by_next
             if last:
-                wrap[2 * i : 2 * i + 2] = by_next
+                wrap[2 * i : 2 * i + 2, 0 if self.clocked else 1 :] = by_next[:, 0 if self.clocked else 1 :]
             if len(over):
                 # launches in the first period move with the period, and so does the length of the last flight
                 moved = end.by_numbers - np.outer(before * slopes, end.by_tau)
                 moved += np.outer(self.k * slopes, end.by_time) if last else 0.0
                 slope[2 * i : 2 * i + 2, 2 * n :] = (moved * scale).T
                 slope[2 * i + 1, 2 * n :] += by_law
-        return Loop(miss, slope, wrap)
+        return Loop(miss, slope, wrap, self.clocked, self.grazes(point))
 
     def product(self, point: Array) -> float:
         """The product of the multipliers, det D G over all impacts; nan at a graze."""
@@ -197,7 +228,7 @@ class Closing:
     def scales(self, point: Array) -> Array:
         """Sizes of the parts of a point: a period, the largest velocity or one that a period gives, 1."""
         n, values = self.n, self.values(point)
-        period = self.family.period(values).value
+        period = self.period(point)
         # a scale for orbits without a fast impact: what the force gives in a sixteenth of a period
         push = max(abs(float(self.family.end(values, i * period / 8, 0.0, 0.0).by_time[1])) for i in range(8))
         speeds = np.full(n, max(float(np.abs(point[n : 2 * n]).max()), push * period / 16, 1e-300))
@@ -228,7 +259,8 @@ class Closing:
         end = self.family.end(values, launch, v, time)
         numbers = direction[2 * n :]
         # launches in the first period move with the period
-        moved = direction[flight] - before * float(np.dot(self.family.period(values).slopes, numbers))
+        late = direction[flight] if flight or self.clocked else 0.0
+        moved = late - before * float(np.dot(self._slopes_of_period(point), numbers))
         return float(end.by_tau[0] * moved + end.by_v[0] * direction[n + flight] + numbers @ end.by_numbers[:, 0])
 
     def span(self, point: Array, flight: int) -> float:
@@ -329,6 +361,12 @@ class FreeClosing:
     k: int
     n: int = 0
 
+    clocked: ClassVar[bool] = True
+
+    def times(self, point: Array) -> Array:
+        """The times of the impacts: none."""
+        return point[:0]
+
     def values(self, point: Array) -> dict[str, float]:
         """The free parameters."""
         return dict(zip(self.over, point[2:].tolist(), strict=True))
@@ -367,6 +405,10 @@ class FreeClosing:
         turns = [turn for turn in turns if not turn[0] < span / 4 and not turn[0] >= 5 * span / 4]
         return [[(time, height + rise) for time, height in turns]]
 
+    def period(self, point: Array) -> float:
+        """The period of the forcing."""
+        return self.family.period(self.launch(point)).value
+
     def rise(self, point: Array, direction: Array, flight: int, time: float) -> float:  # noqa: ARG002
         """The rate at which x - c at a time changes as the point moves: see `Closing.rise`."""
         end = self.family.end(self.launch(point), 0.0, float(point[1]), time)
@@ -377,7 +419,7 @@ class FreeClosing:
 
     def span(self, point: Array, flight: int = 0) -> float:  # noqa: ARG002
         """The time of k periods."""
-        return self.k * self.family.period(self.launch(point)).value
+        return self.k * self.period(point)
 
     def scales(self, point: Array) -> Array:
         """Sizes of the parts of a point."""

@@ -13,7 +13,7 @@ from singimpact.branches.continuation import Curve, Point
 from singimpact.branches.events import KINDS, Event
 from singimpact.branches.events.orbit_state import OrbitState
 from singimpact.branches.orbit_curve import SETTINGS, OrbitCurve, places
-from singimpact.branches.solutions import AnyClosing, closing_of
+from singimpact.branches.solutions import AnyClosing, closing_of, point_of
 from singimpact.inputs import checked_keywords, refuse, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION, value_of, with_number
@@ -150,9 +150,9 @@ def event_curve(
     ends = [interval(name, limits, value) for name, limits, value in zip(over, intervals, values, strict=True)]
     n = int(orbit.n)
     closing = closing_of(osc, n, orbit.k, over)
-    states = np.concatenate([np.asarray(row, dtype=float) for row in (orbit.tau, orbit.v)])
     if not n:
         raise refuse("event", event, "an event of an orbit with impacts: event.others()[0] has one that grazes alike")
+    states = point_of(closing, orbit)
     walk = _Walk(closing, event, ends, step or SETTINGS.step, points)
     return walk.curve(np.concatenate([states, values]), osc)
 
@@ -197,7 +197,7 @@ class _Walk(OrbitCurve):
     def is_sound(self, point: Array) -> bool:
         """Whether no flight has shrunk to nothing, and both numbers are such as a model may have."""
         values = self.closing.values(point)
-        allowed = 0 < values.get(RESTITUTION, 0.5) < 1.05 and self.closing.family.period(values).value > 0
+        allowed = 0 < values.get(RESTITUTION, 0.5) < 1.05 and self.closing.period(point) > 0
         return bool(allowed) and super().is_sound(point)
 
     # ---- the curve

@@ -94,7 +94,7 @@ class OrbitCurve(ABC):
         """Whether no flight has shrunk to nothing."""
         if not isinstance(self.closing, Closing):
             return True
-        period = self.closing.family.period(self.closing.values(point)).value
+        period = self.closing.period(point)
         return not any(flight[3] < SETTINGS.shortest * period for flight in self.closing.flights(point))
 
     def scaled(self, guess: Array) -> None:
@@ -168,8 +168,8 @@ class OrbitCurve(ABC):
     def _again(self, curve: Curve, start: Point, here: Point, after: Point) -> bool:
         """Whether a step passes the start, perhaps some periods later."""
         gap, n = (start.at - here.at) / curve.scales, self.closing.n
-        if n:
-            period = self.closing.family.period(self.closing.values(after.at)).value / curve.scales[0]
+        if isinstance(self.closing, Closing) and self.closing.clocked:
+            period = self.closing.period(after.at) / curve.scales[0]
             gap[:n] -= period * np.rint(gap[0] / period)
         return curve.passes(start, here, after, gap)
 

@@ -23,7 +23,7 @@ Sentences = tuple[str, ...]
 
 @dataclass(frozen=True, eq=False)
 class PeriodicOrbit(Result):
-    """An orbit that closes after k periods of the forcing.
+    """An orbit that closes after k periods of the forcing, or a limit cycle of a model without one.
 
     Parameters
     ----------
@@ -35,6 +35,7 @@ class PeriodicOrbit(Result):
     kind : "impacts"; "chatter", which completes, rests and lifts off; "free", without impact.
     visible : whether no flight is below the wall and every v >= 0; a virtual orbit solves the equations alone.
     x : of an orbit without impacts, x at the time `tau`.
+    span : of a limit cycle its period; None where the forcing has one.
 
     Notes
     -----
@@ -52,6 +53,7 @@ class PeriodicOrbit(Result):
     kind: str = "impacts"
     visible: bool = True
     x: Any = None
+    span: Any = None
 
     branch, manifold, homoclinic_points = Study(), Study(), Study()  # functions of `singimpact`, documented there
 
@@ -60,6 +62,7 @@ class PeriodicOrbit(Result):
         return {
             "n": None if self.kind == "chatter" else int(self.n),
             "k": self.k,
+            "period": self.period,
             "kind": self.kind,
             "stable": self.stable,
             "visible": bool(self.visible),
@@ -73,6 +76,11 @@ class PeriodicOrbit(Result):
         values = self.as_dict()
         states = {name: (("impact",), values[name]) for name in ("tau", "v")}
         return states | {"multipliers": (("multiplier",), values["multipliers"])}
+
+    @property
+    def period(self) -> float:
+        """The time after which the orbit closes: k periods of the forcing, or the period of a limit cycle."""
+        return float(self.k * as_float(self.oscillator.period)) if self.span is None else float(self.span)
 
     @property
     def stable(self) -> bool:
@@ -96,6 +104,8 @@ class PeriodicOrbit(Result):
         """
         from singimpact.branches.krawczyk import enclosed_orbit
 
+        if self.span is not None:
+            raise InputError(f"{self!r} is not certified: proofs are of orbits with the period of a forcing")
         if self.kind != "impacts":
             raise InputError(f"{self!r} is not accepted: an orbit with impacts, none of which rests, can be certified")
         enclosure = enclosed_orbit(self.oscillator, self.tau, self.v, self.k, digits)
@@ -104,7 +114,9 @@ class PeriodicOrbit(Result):
         return enclosure
 
     def __repr__(self) -> str:
-        words = {"chatter": f"(inf, {self.k}) orbit: chatter and rest", "free": "orbit without impact"}.get(
+        count = f"{self.n:.0f} impact{'s' * (self.n > 1)}"
+        cycle = None if self.span is None else f"limit cycle of {count}, period {self.span:.9g}"
+        words = cycle or {"chatter": f"(inf, {self.k}) orbit: chatter and rest", "free": "orbit without impact"}.get(
             self.kind, f"({self.n:.0f}, {self.k}) orbit"
         )
         kind = ("stable" if self.stable else "unstable") if self.visible else "virtual"
@@ -137,11 +149,13 @@ def same_states(one: PeriodicOrbit, other: PeriodicOrbit, within: float) -> bool
     >>> same_states(first, second, 1e-9)
     True
     """
-    period = as_float(one.oscillator.period)
+    cycles = one.span is not None
+    period = one.period if cycles else as_float(one.oscillator.period)
     tau, v, times, speeds = (np.asarray(row, dtype=float) for row in (one.tau, one.v, other.tau, other.v))
     fast = max(float(np.abs(v).max()), float(np.abs(speeds).max()), 1e-12)  # at a graze v is rounding
     for shift in range(len(tau)):
-        gaps = (np.roll(tau, shift) - times) / period
+        gaps = np.roll(tau, shift) - times
+        gaps = (gaps - gaps[0] if cycles else gaps) / period
         gaps -= np.rint(gaps)
         if np.abs(gaps).max() < within and np.abs(np.roll(v, shift) - speeds).max() < within * fast:
             return True

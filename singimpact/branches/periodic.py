@@ -22,9 +22,10 @@ from singimpact.branches.ball_closing import BallClosing, return_slope
 from singimpact.branches.closing import Closing
 from singimpact.branches.enclosed_closing import closed_boxes
 from singimpact.branches.krawczyk import Krawczyk
+from singimpact.branches.limit_cycle import cycles_found
 from singimpact.branches.orbits import PeriodicOrbit, PeriodicOrbits, same_states
 from singimpact.branches.resting import chatter_orbits, free_orbits
-from singimpact.branches.solutions import orbit_at
+from singimpact.branches.solutions import closing_of, is_autonomous, orbit_at
 from singimpact.branches.starts import closed_from, grid_of_starts, phases_and_speeds, two_impacts
 from singimpact.flights.enclosures.equation import Refused
 from singimpact.flights.family import family
@@ -49,20 +50,21 @@ class PeriodicSettings:
 
 SETTINGS = PeriodicSettings()
 SEARCHED = "found from a grid of starts and from grazes: it is not shown that there are no others"
+CYCLES_SEARCHED = "found from a grid of velocities: it is not shown that there are no others"
 SPARE = 5
 """Digits of the states in balls beside those asked for."""
 
 
 def periodic(
-    osc: Oscillator, n: Any, k: int, start: Any = None, *, v: Any = None, digits: int | None = None
+    osc: Oscillator, n: Any, k: int | None = None, start: Any = None, *, v: Any = None, digits: int | None = None
 ) -> PeriodicOrbits:
     """The orbits of n impacts in k periods of the forcing.
 
     Parameters
     ----------
-    osc : the model; g must have a period.
+    osc : the model; f and g have a common period in t, or are free of t: then the orbits are limit cycles.
     n : impacts, a whole number; `math.inf` for orbits that chatter to rest and lift off; 0 for orbits without impact.
-    k : periods, a whole number >= 1.
+    k : periods, a whole number >= 1; None for limit cycles, which have no forcing to count.
     start : states to start from in place of a grid: (tau, v), or a sequence of n of them, or a `PeriodicOrbit`.
     v : (low, high), for models without a closed form and n = 1 or 2: `.complete` then tells by a proof whether there
         are others with all velocities after impacts in this window; with n = 1 this takes seconds, with n = 2 a minute.
@@ -84,8 +86,10 @@ def periodic(
     >>> print([f"{orbit.v[0]:.12f}" for orbit in found], found.complete)
     ['0.533333333333'] True
     """
+    if is_autonomous(osc):
+        return _limit_cycles(osc, n, (k, start, v, digits))
     if osc.period is None:
-        raise InputError("the forcing has no period: a periodic orbit needs one")
+        raise InputError("the forcing has no period: a periodic orbit needs one, or f and g free of t")
     k, window = _count("k", k, 1), None if v is None else _window(v)
     if n == np.inf:
         return chatter_orbits(osc, k)
@@ -142,6 +146,18 @@ def _all(osc: Oscillator, n: int, k: int) -> tuple[list[Array], tuple[str, ...] 
     closing = Closing(family(osc), n, k)
     points = closed_from(closing, grid_of_starts(closing))
     return points, None if n == 2 and linear else (SEARCHED,)
+
+
+def _limit_cycles(osc: Oscillator, n: Any, others: tuple[Any, ...]) -> PeriodicOrbits:
+    """The limit cycles of n impacts of a model in which t does not occur."""
+    for name, value in zip(("k", "start", "v", "digits"), others, strict=True):
+        if value is not None:
+            raise refuse(
+                name, value, f"no {name} for a model in which t does not occur: osc.periodic(n) lists its cycles"
+            )
+    count = _count("n", n, 1)
+    orbits = [orbit for orbit in _judged(osc, count, count, cycles_found(osc, count)) if orbit.visible]
+    return PeriodicOrbits(orbits, (CYCLES_SEARCHED,))
 
 
 def _doubts_of_two(osc: Oscillator, k: int, listed: list[PeriodicOrbit]) -> tuple[str, ...]:
@@ -210,7 +226,8 @@ def _pairs(start: Any) -> list[Any]:
 
 def _judged(osc: Oscillator, n: int, k: int, points: list[Array]) -> list[PeriodicOrbit]:
     """Orbits of closed points, each once, in the order of the first phase; those that close sooner are left out."""
-    closing = Closing(family(osc), n, k)
+    closing = closing_of(osc, n, k, ())
+    assert isinstance(closing, Closing)
     distinct: list[PeriodicOrbit] = []
     for point in points:
         if not point[n : 2 * n].max() > SETTINGS.least or point[n : 2 * n].min() < -SETTINGS.least:
@@ -223,7 +240,7 @@ def _judged(osc: Oscillator, n: int, k: int, points: list[Array]) -> list[Period
 
 def _sooner(orbit: PeriodicOrbit, closing: Closing) -> bool:
     """Whether an orbit closes after fewer impacts."""
-    n, k, period = closing.n, closing.k, closing.family.period({}).value
+    n, k, period = closing.n, closing.k, orbit.period / closing.k
     fast = max(float(np.max(orbit.v)), 1e-300)
     for fewer in range(1, n):
         if n % fewer or (k * fewer) % n:

@@ -6,8 +6,10 @@ from functools import partial
 
 import numpy as np
 
+from singimpact.algebra.expressions import names_in
 from singimpact.algebra.numbers import Array, as_float
 from singimpact.branches.closing import Closing, FreeClosing
+from singimpact.branches.limit_cycle import CycleClosing
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.resting import free_orbit_at
 from singimpact.flights.family import family
@@ -34,11 +36,25 @@ SETTINGS = VisibleSettings()
 
 def closing_of(osc: Oscillator, n: int, k: int, over: Sequence[str]) -> AnyClosing:
     """The closing conditions of n impacts, or of none, in k periods."""
+    if n and is_autonomous(osc):
+        return CycleClosing(family(osc, tuple(over)), n, k)
     if n:
         return Closing(family(osc, tuple(over)), n, k)
     return FreeClosing(
         family(osc, (CLEARANCE, *(name for name in over if name not in (CLEARANCE, RESTITUTION)))), tuple(over), k
     )
+
+
+def point_of(closing: AnyClosing, orbit: PeriodicOrbit) -> Array:
+    """The unknowns of an orbit with impacts."""
+    assert isinstance(closing, Closing)
+    times, speeds = (np.asarray(row, dtype=float) for row in (orbit.tau, orbit.v))
+    return closing.point(times, speeds, orbit.period)
+
+
+def is_autonomous(osc: Oscillator) -> bool:
+    """Whether t occurs neither in f nor in g."""
+    return not osc.parametric and "t" not in names_in(osc.g)
 
 
 def orbit_of(closing: AnyClosing, point: Array, seen: bool | None = None) -> PeriodicOrbit:
@@ -76,6 +92,7 @@ def orbit_at(closing: Closing, point: Array, osc: Oscillator | None = None, seen
         n,
         k,
         visible=seen,
+        span=None if closing.clocked else float(point[0]),
     )
 
 

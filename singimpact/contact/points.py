@@ -85,10 +85,16 @@ def enclosed(ball: Callable[[int], Any], digits: int) -> Certified:
 
 
 class TangencyPoints(Results, tuple[TangencyPoint, ...]):
-    """Tangency points in order, with `.tau` and `.kind` as arrays; `digits` of what `certified` gives."""
+    """Tangency points in order, with `.tau` and `.kind` as arrays; `digits` of what `certified` gives.
+
+    Attributes
+    ----------
+    notes : why there are none, where a_c is the same at all times.
+    """
 
     called = "points"
     digits: int = 30
+    notes: tuple[str, ...] = ()
 
     def certified(self, digits: int | None = None) -> tuple[Certified, ...]:
         """The times tau_*, each with a certified radius and so many significant digits."""
@@ -128,6 +134,10 @@ def tangency_points(osc: Oscillator, digits: int = 30) -> TangencyPoints:
     """
     points = TangencyPoints(_points(osc))
     points.digits = whole("digits", digits, 1, MOST_DIGITS)
+    a_c = acceleration(osc)
+    if "t" not in names_in(a_c):
+        zeros = "no zeros" if as_float(a_c) else "no isolated zeros"
+        points.notes = (f"a_c = {as_float(a_c):.12g} at all times: it has {zeros}",)
     return points
 
 

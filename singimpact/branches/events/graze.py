@@ -79,7 +79,7 @@ class Graze(TouchingKind):
         from singimpact.branches.solutions import orbit_period
         from singimpact.oscillator.wall_acceleration import acceleration
 
-        if not orbit.n:
+        if not orbit.n or orbit.span is not None:  # without a clock a_c is one number
             return ""
         at_impact = float(acceleration(orbit.oscillator, np.array([time]))[0])
         largest = float(np.abs(acceleration(orbit.oscillator, np.linspace(0, 1, 9) * orbit_period(orbit))).max())
@@ -91,6 +91,8 @@ class Graze(TouchingKind):
         """The orbit without the impact; of an orbit without impact the one with an impact there."""
         from singimpact.branches.branch_points import without_impact
 
+        if orbit.span is not None and orbit.n == 1:  # a cycle without impact is not an orbit of this package
+            return []
         return [without_impact(orbit)] if orbit.n else super().others(orbit, over, parameter)
 
     def touching(self, closing: AnyClosing, orbit: PeriodicOrbit) -> int:  # noqa: ARG002
@@ -122,11 +124,10 @@ class Graze(TouchingKind):
         assert isinstance(closing, Closing)
         launch = closing.flights(state.at)[state.impact][0]
         pressing = float(closing.family.end(closing.values(state.at), launch, 0.0, 0.0).by_time[1])
-        return {
-            "fold at a graze": state.determinant(1.0),
-            "doubling at a graze": state.determinant(-1.0),
-            "degenerate graze": pressing,
-        } | grazes(state, "two grazes", but=state.impact)
+        tests = {"degenerate graze": pressing} | grazes(state, "two grazes", but=state.impact)
+        if not closing.clocked:  # the determinants vanish at every graze of a cycle
+            return tests
+        return {"fold at a graze": state.determinant(1.0), "doubling at a graze": state.determinant(-1.0)} | tests
 
 
 GRAZE = Graze()

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from singimpact.branches.orbits import PeriodicOrbit
     from singimpact.branches.solutions import AnyClosing
 
+NEAR = 1e-3
+"""Distance of a multiplier of a limit cycle from that of its event."""
 Indexed = Iterator[tuple[int, int, Test]]
 """Impact or flight, which of its minima, and the test there."""
 
@@ -162,6 +164,10 @@ class MultiplierKind(ReturnMapKind):
     """A kind at which a real multiplier passes 1 or -1: 1 - mu t + d vanishes, t the trace of M, d its determinant."""
 
     multiplier = 1.0
+
+    def occurs(self, loop: Loop) -> bool:
+        """Whether the multiplier is there; det J(mu) of a limit cycle vanishes at its graze too."""
+        return loop.clocked or bool(abs(loop.multipliers()[0] - self.multiplier) < NEAR)
 
     def equation(self, state: OrbitState) -> float:
         """det J(mu) of `closing.Loop`, of scaled unknowns."""

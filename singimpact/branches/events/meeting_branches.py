@@ -66,11 +66,11 @@ def repeats(closing: AnyClosing, at: Array) -> int:
     n, k = closing.n, closing.k
     if not n:
         return 1
-    period, scales = closing.family.period(closing.values(at)).value, closing.scales(at)
+    period, scales, at_times = closing.period(at), closing.scales(at), closing.times(at)
     for share in range(n, 1, -1):
         if n % share == 0 and k % share == 0:
             m = n // share
-            times = (np.roll(at[:n], -m) - at[:n] - k // share * period)[: n - m] / scales[0]
+            times = (np.roll(at_times, -m) - at_times - k // share * period)[: n - m] / scales[0]
             speeds = (np.roll(at[n : 2 * n], -m) - at[n : 2 * n]) / scales[n]
             if max(float(np.abs(times).max()), float(np.abs(speeds).max())) < ALIKE:
                 return share
