@@ -95,9 +95,9 @@ class Branch(Result):
     def table(self) -> dict[str, Array]:
         """One row for each point: parameter, states, multipliers, stable, visible."""
         multipliers = {
-            f"multiplier_{i + 1}_{name}": part(self.multipliers[:, i])
+            f"multiplier_{i + 1}_{name}": component(self.multipliers[:, i])
             for i in range(self.multipliers.shape[1])
-            for name, part in (("re", np.real), ("im", np.imag))
+            for name, component in (("re", np.real), ("im", np.imag))
         }
         flags = {name: getattr(self, name).astype(int) for name in ("stable", "visible")}
         cycles = {"period": self.period} if self.multipliers.shape[1] == 1 else {}  # of others the forcing has it

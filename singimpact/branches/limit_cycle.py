@@ -57,7 +57,7 @@ class CycleClosing(Closing):
         return bool(np.abs(point[self.n : 2 * self.n]).min() < SETTINGS.graze * self.family.fastest)
 
     def flights(self, point: Array) -> list[Flown]:
-        """As of `Closing`; every launch is at time 0, because no flight depends on its time."""
+        """All flights; every launch is at time 0, because no flight depends on its time."""
         times = [*self.times(point).tolist(), float(point[0])]
         spans, speeds = np.diff(times).tolist(), point[self.n : 2 * self.n].tolist()
         return [(0.0, 0.0, v, span) for v, span in zip(speeds, spans, strict=True)]

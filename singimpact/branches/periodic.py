@@ -25,7 +25,7 @@ from singimpact.branches.krawczyk import Krawczyk
 from singimpact.branches.limit_cycle import cycles_found
 from singimpact.branches.orbits import PeriodicOrbit, PeriodicOrbits, same_states
 from singimpact.branches.resting import chatter_orbits, free_orbits
-from singimpact.branches.solutions import closing_of, is_autonomous, orbit_at
+from singimpact.branches.solutions import closing_of, orbit_at
 from singimpact.branches.starts import closed_from, grid_of_starts, phases_and_speeds, two_impacts
 from singimpact.flights.enclosures.equation import Refused
 from singimpact.flights.family import family
@@ -86,7 +86,7 @@ def periodic(
     >>> print([f"{orbit.v[0]:.12f}" for orbit in found], found.complete)
     ['0.533333333333'] True
     """
-    if is_autonomous(osc):
+    if osc.autonomous:
         return _limit_cycles(osc, n, (k, start, v, digits))
     if osc.period is None:
         raise InputError("the forcing has no period: a periodic orbit needs one, or f and g free of t")

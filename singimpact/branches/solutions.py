@@ -6,7 +6,6 @@ from functools import partial
 
 import numpy as np
 
-from singimpact.algebra.expressions import names_in
 from singimpact.algebra.numbers import Array, as_float
 from singimpact.branches.closing import Closing, FreeClosing
 from singimpact.branches.limit_cycle import CycleClosing
@@ -36,7 +35,7 @@ SETTINGS = VisibleSettings()
 
 def closing_of(osc: Oscillator, n: int, k: int, over: Sequence[str]) -> AnyClosing:
     """The closing conditions of n impacts, or of none, in k periods."""
-    if n and is_autonomous(osc):
+    if n and osc.autonomous:
         return CycleClosing(family(osc, tuple(over)), n, k)
     if n:
         return Closing(family(osc, tuple(over)), n, k)
@@ -50,11 +49,6 @@ def point_of(closing: AnyClosing, orbit: PeriodicOrbit) -> Array:
     assert isinstance(closing, Closing)
     times, speeds = (np.asarray(row, dtype=float) for row in (orbit.tau, orbit.v))
     return closing.point(times, speeds, orbit.period)
-
-
-def is_autonomous(osc: Oscillator) -> bool:
-    """Whether t occurs neither in f nor in g."""
-    return not osc.parametric and "t" not in names_in(osc.g)
 
 
 def orbit_of(closing: AnyClosing, point: Array, seen: bool | None = None) -> PeriodicOrbit:

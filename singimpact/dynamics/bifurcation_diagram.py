@@ -49,11 +49,12 @@ class Bifurcation(Result):
     Attributes
     ----------
     over : the parameter. values : its values in the order of computation. events : shape (values, kept,
-        3): phase, v, 1 where chatter ended; nan where an orbit had fewer.
+        3): phase, v, 1 where chatter ended; nan where an orbit had fewer. Of a model without t the time since the
+        event before stands in place of the phase.
     direction : "up", "down" or "both" where each orbit starts from the last state of the one before: with "both" the
         values go up, then down. Empty where each starts from one state.
-    periods : of the forcing at each of the values. settled : bool of each value: the events are those of an
-        attracting orbit or repeat, or no impact comes before the horizon; False where a flight is unresolved.
+    periods : of the forcing at each of the values, nan without one. settled : bool of each value: the events are those
+        of an attracting orbit or repeat, or no impact comes before the horizon; False where a flight is unresolved.
     settle : impacts after which an orbit that has not settled was left.
     """
 
@@ -128,8 +129,8 @@ def bifurcation(
     if not isinstance(model, Oscillator):
         raise refuse("model", model, "an ImpactOscillator")
     model = with_number(model, over)
-    if model.period is None:
-        raise refuse("model", model, "one with a period: phases are shown")
+    if model.period is None and not model.autonomous:
+        raise refuse("model", model, "one with a period, or without t: phases are shown")
     for name, value, least in (("points", points, 2), ("impacts", impacts, 1), ("kept", kept, 1)):
         if isinstance(value, bool) or not isinstance(value, int) or value < least:
             raise refuse(name, value, f"a whole number from {least}")
@@ -164,8 +165,7 @@ def _made(over: str, values: Array, events: Array, direction: str, periods: Arra
 def _periods(model: Oscillator, over: str, values: Array) -> Array:
     """The period at each value; only parameters that occur beside t change it."""
     if not any(over in names_in(tree) for tree in moving_in_time(model.f, model.g).values()):
-        assert model.period is not None
-        return np.full(values.size, as_float(model.period))
+        return np.full(values.size, np.nan if model.period is None else as_float(model.period))
     moved = [model.replace(**{over: value}).period for value in values.tolist()]
     return np.array([np.nan if period is None else as_float(period) for period in moved])
 
@@ -188,10 +188,15 @@ def _followed(first: Orbit, flown: tuple[int, int, int]) -> tuple[Orbit, bool]:
     last, count, block = first, flown[0], flown[0]
     while not (repeats := _repeats(last)) and not _is_unresolved(last) and count < flown[2]:
         block = min(2 * block, flown[2] - count)
-        period = as_float(last.oscillator.period)  # type: ignore[arg-type]
-        last = orbit(last.oscillator, float(np.mod(last.tau[-1], period)), float(last.v[-1]), block)
+        last = orbit(last.oscillator, _phase(last, float(last.tau[-1])), float(last.v[-1]), block)
         count += block
     return last, repeats
+
+
+def _phase(flown_orbit: Orbit, time: float) -> float:
+    """A time within a period; 0 where the model has no clock."""
+    period = flown_orbit.oscillator.period
+    return 0.0 if period is None else float(np.mod(time, as_float(period)))
 
 
 def _is_unresolved(flown_orbit: Orbit) -> bool:
@@ -208,12 +213,28 @@ def _repeats(flown_orbit: Orbit) -> bool:
         return True
     shown = np.isin(flown_orbit.kind, ("impact", "graze", "complete"))
     tau, v = flown_orbit.tau[shown], flown_orbit.v[shown]
+    if flown_orbit.oscillator.autonomous:
+        return _is_cycle(np.diff(tau), v[1:])
     period, fast = as_float(flown_orbit.oscillator.period), max(float(v.max(initial=0.0)), 1e-300)  # type: ignore[arg-type]
     for n in range(1, min(SETTINGS.period, tau.size // 2) + 1):
         last, before = slice(-n, None), slice(-2 * n, -n)
         if apart((tau[last], v[last]), (tau[before], v[before]), period, fast).max() < SETTINGS.close:
             only_impacts = bool((flown_orbit.kind[shown][-2 * n :] == "impact").all())
             return not only_impacts or _is_periodic(flown_orbit, n, period, fast)
+    return False
+
+
+def _is_cycle(spans: Array, v: Array) -> bool:
+    """Whether the last events of a model without a clock are within `close` of a limit cycle.
+
+    The distance that is left is that of a geometric sequence with the ratio of the last two changes.
+    """
+    sizes = 4 * max(float(spans.max(initial=0.0)), 1e-300), max(float(v.max(initial=0.0)), 1e-300)
+    for n in range(1, min(SETTINGS.period, v.size // 3) + 1):
+        parts = [(spans[v.size - k * n :][:n], v[v.size - k * n :][:n]) for k in (1, 2, 3)]
+        last, before = (apart(parts[i], parts[i + 1], *sizes).max() for i in (0, 1))
+        if last < SETTINGS.close and (last < 1e-14 or last * last < SETTINGS.close * max(before - last, 0.0)):
+            return True
     return False
 
 
@@ -246,8 +267,11 @@ def _carried(model: Oscillator, over: str, values: Array, start: Any, flown: tup
 
 def _continued(moved: Oscillator, last: Orbit, impacts: int) -> Orbit:
     """The orbit of a model from the last state of another one; the phase within the period is kept."""
-    assert moved.period is not None and last.oscillator.period is not None  # noqa: PT018
-    period, before = as_float(moved.period), as_float(last.oscillator.period)
+    if moved.autonomous:
+        period = before = 1.0
+    else:
+        assert moved.period is not None and last.oscillator.period is not None  # noqa: PT018
+        period, before = as_float(moved.period), as_float(last.oscillator.period)
     away = bool(last.phases) and last.phases[-1][0] == "no_return"
     time = min(last.end, float(last.tau[-1]) + SETTINGS.free * before) if away else float(last.tau[-1])
     tau = float(np.mod(time, before)) / before * period
@@ -264,10 +288,12 @@ def _last_events(flown_orbit: Orbit, repeats: bool, flown: tuple[int, int, int])
 
     Shape (kept + 1, 3): the first number of the last row is 1 where the events repeat.
     """
-    assert flown_orbit.oscillator.period is not None
     shown, count = np.isin(flown_orbit.kind, ("impact", "graze", "complete")), flown[1]
     rows = np.stack([flown_orbit.tau, flown_orbit.v, flown_orbit.kind == "complete"], axis=1)[shown]
+    if flown_orbit.oscillator.autonomous:
+        rows[:, 0] = np.diff(rows[:, 0], prepend=flown_orbit.tau[0])
     last = rows[max(flown[0] - count, 0) :][-count:]
     events = last if len(last) else rows[-1:]  # one that has come to rest for ever shows only that
-    events[:, 0] = np.mod(events[:, 0], as_float(flown_orbit.oscillator.period))
+    if flown_orbit.oscillator.period is not None:
+        events[:, 0] = np.mod(events[:, 0], as_float(flown_orbit.oscillator.period))
     return np.vstack([events, np.full((count - len(events), 3), np.nan), [[float(repeats), 0.0, 0.0]]])

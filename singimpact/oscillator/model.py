@@ -106,6 +106,11 @@ class Oscillator:
         """Whether t occurs in f."""
         return "t" in names_in(self.f)
 
+    @property
+    def autonomous(self) -> bool:
+        """Whether t occurs neither in f nor in g: the model has no clock."""
+        return not self.parametric and "t" not in names_in(self.g)
+
     def force(self, keep: Collection[str] = ()) -> Expression:
         """f with the parameters' values put in; those in `keep` stay letters."""
         return _with_values(self, "f", frozenset(keep))

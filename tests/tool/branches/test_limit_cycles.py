@@ -131,3 +131,13 @@ def test_a_constant_acceleration_at_the_wall_is_named(osc):
     points = si.tangency_points(osc)
     assert len(points) == 0
     assert points.notes == ("a_c = 1.5 at all times: it has no zeros",)
+
+
+def test_a_diagram_shows_the_stable_cycles(osc):
+    diagram = osc.bifurcation(over="clearance", between=("-1.9", "0.3"), points=9, start=(0, 2))
+    assert diagram.settled.all()
+    for clearance, events in zip(diagram.values, diagram.events, strict=True):
+        stable = [cycle for cycle in osc.replace(clearance=float(clearance)).periodic(1) if cycle.stable]
+        span, v, ended = events[-1]
+        assert ended == 0
+        assert any(np.allclose([span, v], [cycle.period, cycle.v[0]], atol=1e-8) for cycle in stable)
