@@ -42,8 +42,11 @@ PREPARATIONS = {"linear_entry": entries.PREPARE, "batch_entry": entries.PREPARE_
 """Kinds of work that fill the tables which an entry reads."""
 SEARCHES = (entries.HITS, entries.DROPS)
 """Kinds of work that look for hits; they return codes too."""
-INTERPRETED: dict[int, Callable[..., None]] = {entries.RELEASES: Interpreter.releases, entries.DROPS: Interpreter.drops,
-               entries.PLACES: Interpreter.places, entries.VARIATIONS: Interpreter.variations}  # fmt: skip
+INTERPRETED: dict[int, Callable[..., None]] = {
+    entries.RELEASES: Interpreter.releases, entries.PLACES: Interpreter.places,
+    entries.VARIATIONS: Interpreter.variations}  # fmt: skip
+Work = tuple[Callable[..., int], int]
+"""An entry and a kind of work."""
 
 
 @lru_cache(maxsize=256)
@@ -197,11 +200,15 @@ class CompiledModel:
 
     def _work(self, kind: int, states: tuple[Array, ...], *results: Array) -> None:
         """Work on flights, one a state; interpreted until it is compiled, unless Python's numbers refuse it."""
-        name, count = self.main if self.linear else "judge_entry", states[0].size
+        name, count = self._named(kind), states[0].size
         price = self.price * (1 if self.linear or kind != entries.VARIATIONS else LIMITS.varied)
         entry = self._unless_done(name, price * count, lambda: INTERPRETED[kind](self.interpreter, *states, *results))
         if entry is not None:
             self._call(entry, (kind, count, 0), states, *results)
+
+    def _named(self, kind: int) -> str:
+        """The entry that does a kind of work on one flight after the other."""
+        return self.main if self.linear or kind == entries.HITS else "judge_entry"
 
     @kept_property
     def sometimes_kept(self) -> bool:
@@ -242,70 +249,90 @@ class CompiledModel:
         pushes : a_c at the launches of a Taylor flow, nan where it is not known.
         """
         flight_count.add(int(np.count_nonzero(v)))
-        if 0 < tau.size <= FEW and (results := self._hits_of_few(tau, v, pushes)) is not None:
+        return self._searched(entries.HITS, tau, v, pushes)
+
+    def drops(self, tau: Array, v: Array, heights: Array) -> tuple[Array, Array]:
+        """`hits` of starts off the wall, with v of either sign.
+
+        Parameters
+        ----------
+        heights : x - c > 0 at the starts.
+        """
+        flight_count.add(tau.size)
+        return self._searched(entries.DROPS, tau, v, heights)
+
+    def _searched(self, kind: int, tau: Array, v: Array, quantities: Array | None) -> tuple[Array, Array]:
+        """`hits` or `drops`."""
+        if 0 < tau.size <= FEW and (results := self._hits_of_few(kind, tau, v, quantities)) is not None:
             return results
         status, out = np.empty(tau.size, np.int8), np.empty((10, tau.size))
-        if self.linear:
-            states: tuple[Array, ...] = (tau, v)
-        else:
+        states: tuple[Array, ...] = (tau, v) if quantities is None else (tau, v, quantities)
+        if not self.linear:
             out[4:] = np.nan
-            states = tau, v, np.full(tau.size, np.nan) if pushes is None else pushes
-        name, least, begin = ("batch_entry", LANES, 0) if self.linear and tau.size >= LANES else (self.main, 1, 0)
+            states = (tau, v, np.full(tau.size, np.nan)) if quantities is None else states
+        name, least, begin = self._named(kind), 1, 0
+        if self.linear and tau.size >= LANES:
+            name, least = "batch_entry", LANES
         while begin < tau.size:
             entry = self._compiled(name, self.price * (tau.size - begin))
             if entry is None:
                 end = min(begin + TABLES.interpreted, tau.size)
-                self._interpreted_hits(states, (out, status), slice(begin, end))
+                self._interpreted_hits(kind, states, (out, status), slice(begin, end))
             else:
                 end = min(begin + TABLES.block * threads_now(), tau.size)
-                fly = partial(self._compiled_hits, entry, states, (out, status), least)
+                fly = partial(self._compiled_hits, (entry, kind), states, (out, status), least)
                 shared_out(fly, begin, end, TABLES.shared)
             begin = end
         return status, out
 
-    def _hits_of_few(self, tau: Array, v: Array, pushes: Array | None) -> tuple[Array, Array] | None:
-        """`hits` of few states; None for long flights, which hear an interruption, and until they are compiled."""
-        is_long, begun = self._is_long(entries.HITS, tau.size), perf_counter()
-        bound = None if is_long else self._bound.pop(entries.HITS, None) or self._for_few(entries.HITS)
+    def _hits_of_few(self, kind: int, tau: Array, v: Array, quantities: Array | None) -> tuple[Array, Array] | None:
+        """`_searched` of few states; None for long flights, which hear an interruption, and until they are compiled."""
+        is_long, begun = self._is_long(kind, tau.size), perf_counter()
+        bound = None if is_long else self._bound.pop(kind, None) or self._for_few(kind)
         if bound is None:
             return None
-        results = bound.few(tau, v, np.nan if pushes is None else pushes)
-        self._bound[entries.HITS] = bound
-        self._measure(entries.HITS, tau.size, begun)
+        results = bound.few(tau, v, np.nan if quantities is None else quantities)
+        self._bound[kind] = bound
+        self._measure(kind, tau.size, begun)
         results[1][4 if not self.linear else 10 :] = np.nan
         return results
 
-    def _compiled_hits(self, entry: Any, states: Any, results: Any, least: int, chosen: slice) -> None:
-        out, status = results
+    def _compiled_hits(
+        self, work: Work, states: tuple[Array, ...], results: tuple[Array, Array], least: int, chosen: slice
+    ) -> None:
+        (entry, kind), (out, status) = work, results
         if chosen.start == 0 and chosen.stop == status.size:
-            self._call(entry, (entries.HITS, status.size, 0), states, out, status)
+            self._call(entry, (kind, status.size, 0), states, out, status)
             return
         # a batch is full: the last one flies some states again
         chosen = slice(min(chosen.start, chosen.stop - least), chosen.stop)
         rows = out[:, chosen].copy()
-        self._call(entry, (entries.HITS, rows.shape[1], 0), tuple(row[chosen] for row in states), rows, status[chosen])
+        self._call(entry, (kind, rows.shape[1], 0), tuple(row[chosen] for row in states), rows, status[chosen])
         out[:, chosen] = rows
 
-    def _interpreted_hits(self, states: Any, results: Any, chosen: slice) -> None:
+    def _interpreted_hits(
+        self, kind: int, states: tuple[Array, ...], results: tuple[Array, Array], chosen: slice
+    ) -> None:
         out, status = results
         rows = np.empty((10, chosen.stop - chosen.start))
         try:
-            self.interpreter.hits(tuple(column[chosen] for column in states), rows, status[chosen])
+            parts = tuple(column[chosen] for column in states)
+            self.interpreter.hits(parts, kind == entries.DROPS, rows, status[chosen])
             out[:, chosen] = rows
         except LEFT_OPEN:
             if rows.shape[1] == 1:
-                self._compiled_hits(self._here(self.main), states, results, 1, chosen)
+                self._compiled_hits((self._here(self._named(kind)), kind), states, results, 1, chosen)
                 return
             for index in range(chosen.start, chosen.stop):
-                self._interpreted_hits(states, results, slice(index, index + 1))
+                self._interpreted_hits(kind, states, results, slice(index, index + 1))
 
     def one(self, kind: int, tau: float, v: float, *quantities: float) -> tuple[int, list[float]]:
         """Code and results of one flight, v > 0, by the compiled entry with the least overhead.
 
         Parameters
         ----------
-        kind : HITS (the columns of a hit), DROPS, VARIATIONS or PLACES. quantities : as for the method of that name; of
-            a Taylor flow that is searched for hits, a_c at the launch where it is known.
+        kind : HITS, DROPS (the columns of a hit) or VARIATIONS. quantities : as for the method of that name; of hits of
+            a Taylor flow, a_c at the launch where it is known.
         """
         bound = self._bound.pop(kind, None) or self._for_few(kind)
         if bound is not None:
@@ -314,14 +341,14 @@ class CompiledModel:
             if kind in SEARCHES:
                 flight_count.add(1)
             return results
-        work: Any = {entries.HITS: self.hits, entries.DROPS: self.drops, entries.PLACES: self.places}
+        work: Any = {entries.HITS: self.hits, entries.DROPS: self.drops}
         outcome = work.get(kind, self.variations)(*(np.array([number]) for number in (tau, v, *quantities)))
         codes, rows = outcome if kind in SEARCHES else (np.zeros(1, np.int8), outcome)
         return int(codes[0]), rows.ravel().tolist()
 
     def _for_few(self, kind: int) -> Bound | None:
         """A compiled entry over memory of its own."""
-        name = self.main if self.linear or kind == entries.HITS else "judge_entry"
+        name = self._named(kind)
         entry = self.machine.entry(name)
         if entry is None or (self.recurrence and not self.recurrence.is_bound()):
             return None
@@ -333,13 +360,6 @@ class CompiledModel:
         flight_count.add(tau.size)
         status, out, orders = np.empty(tau.size, np.int8), np.full((10, tau.size), np.nan), removed.astype(float)
         self._work(entries.RELEASES, (tau, tau, orders), out, status)
-        return status, out
-
-    def drops(self, tau: Array, v: Array, heights: Array) -> tuple[Array, Array]:
-        """Codes and flight time, velocity, depth and bound, shape (10, n), of starts off the wall; for Taylor flows."""
-        flight_count.add(tau.size)
-        status, out = np.empty(tau.size, np.int8), np.full((10, tau.size), np.nan)
-        self._work(entries.DROPS, (tau, v, heights), out, status)
         return status, out
 
     def segment(self, tau: float, v: float, count: int, near: float = 0.0) -> tuple[Array, int]:

@@ -124,13 +124,7 @@ def dropped(osc: Oscillator, start: tuple[float, float, float], times: Array) ->
     if not model.linear:
         return model.follow(float(model.near(np.array([tau]))[0]), v, times, height)
     one = np.ones(times.shape)
-    return off_wall_places(osc, tau * one, v * one, height * one, times)
-
-
-def off_wall_places(osc: Oscillator, tau: Array, v: Array, height: Array, times: Array) -> Array:
-    """x - c and x' of a linear model at times[i] after the start i off the wall, shape (n, 2)."""
-    model = compiled_model(osc)
-    return model.places(model.near(tau), v, times, height)
+    return model.places(model.near(tau * one), v * one, times, height)
 
 
 def ends(osc: Oscillator, tau: Array, v: Array, times: Array) -> tuple[Array, Array, Array]:

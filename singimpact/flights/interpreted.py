@@ -49,20 +49,16 @@ class Interpreter:
         flat = np.zeros(layout.scratch_length(self.sizes))
         return listed(layout.scratch_of(flat, self.sizes)), listed(layout.columns_of(flat, self.sizes))
 
-    def hits(self, given: tuple[Array, ...], out: Array, status: Array) -> None:
-        """`linear_hits` or `taylor_hits`; given : tau, v, and a_c at the launches of a Taylor flow."""
+    def hits(self, given: tuple[Array, ...], off_wall: bool, out: Array, status: Array) -> None:
+        """`linear_hits`, `drops` or `taylor_hits`; given : tau, v, x - c off the wall or a_c at launches from it."""
         if self.linear:
-            self._rows("linear_hits", given[:2], out, status)
+            self._rows("linear_hits", given if off_wall else (*given[:2], np.zeros(0)), out, status)
         else:
-            self._rows("taylor_hits", given, out, status)
+            self._rows("drops" if off_wall else "taylor_hits", given, out, status)
 
     def releases(self, tau: Array, _: Array, removed: Array, out: Array, status: Array) -> None:
         """First hits of masses released at rest."""
         self._rows("releases", (tau, removed), out, status)
-
-    def drops(self, tau: Array, v: Array, heights: Array, out: Array, status: Array) -> None:
-        """First hits of flights that start off the wall."""
-        self._rows("drops", (tau, v, heights), out, status)
 
     def _rows(self, name: str, given: tuple[Array, ...], out: Array, status: Array) -> None:
         work, _ = self.work()

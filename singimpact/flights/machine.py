@@ -238,10 +238,10 @@ class Bound:
         self._numbers = (ctypes.c_double * numbers.size).from_address(numbers.ctypes.data)
         self._status = (ctypes.c_int8 * FEW).from_address(status.ctypes.data)
 
-    def one(self, tau: float, v: float, quantity: float = nan, other: float = 0.0) -> tuple[int, list[float]]:
+    def one(self, tau: float, v: float, quantity: float = nan) -> tuple[int, list[float]]:
         """Code and the first ten results of one state."""
         numbers = self._numbers
-        numbers[0], numbers[FEW], numbers[2 * FEW], numbers[2 * FEW + 1] = tau, v, quantity, other
+        numbers[0], numbers[FEW], numbers[2 * FEW] = tau, v, quantity
         self._sizes[layout.COUNT] = 1
         self._entry(*self._addresses)
         return self._status[0], numbers[4 * FEW : 4 * FEW + 10]

@@ -86,7 +86,7 @@ class States:
         require_room(("tau", tau), ("v", v))
         if _plain(tau) and _plain(v) and tau.shape == v.shape and (v >= 0).all():  # arrays of doubles as they stand
             return States(tau.ravel(), v.ravel(), tau.shape, (tau.ravel(), v.ravel()))
-        raw = _raw("tau", tau), _raw("v", v)
+        raw = as_written("tau", tau), as_written("v", v)
         try:
             written = np.broadcast_arrays(*raw)
         except ValueError:
@@ -201,7 +201,7 @@ def _zero_beside(osc: Oscillator, written: Any, digits: int | None) -> Zero | No
     return zero_beside(osc, float(written), 256 + 4 * (digits if isinstance(digits, int) else 15))
 
 
-def _raw(name: str, value: Any) -> np.ndarray[Any, Any]:
+def as_written(name: str, value: Any) -> np.ndarray[Any, Any]:
     require_unmasked(name, value)
     if isinstance(value, Expression):
         boxed = np.empty((), dtype=object)

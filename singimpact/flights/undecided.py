@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from singimpact.algebra.balls import Balls
-from singimpact.algebra.expressions import evaluate
-from singimpact.algebra.numbers import Array
+from singimpact.algebra.expressions import Expression, evaluate
+from singimpact.algebra.numbers import Array, constant
 from singimpact.algebra.precision import balls_at
 from singimpact.flights.causes import decoded, explained
 from singimpact.flights.compiled_model import CompiledModel
@@ -204,7 +204,8 @@ def _refined(osc: Oscillator, model: CompiledModel, states: States, codes: Array
 
     for index in wanted:
         fates.status[index] = Status.hit
-        hit = refined_hit(osc, states, index, float(fates.rows[0, index]))
+        exact = states.exact_tau(index), states.exact_v(index), constant("height", 0)
+        hit = refined_hit(osc, exact, float(fates.rows[0, index]))
         if hit is None and left:
             left -= 1
             settled = settle(osc, states, index, float(model.allowance.until(states.v[index])))
@@ -338,28 +339,33 @@ def _system(osc: Oscillator, bits: int) -> LinearSystem:
         return LinearSystem(flint.arb_mat(rows), tuple(waves))
 
 
-def refined_hit(osc: Oscillator, states: States, index: int, time: float) -> list[float] | None:
+def refined_hit(osc: Oscillator, start: tuple[Expression, ...], time: float) -> list[float] | None:
     """Flight time and velocity of a hit of a linear model, correctly rounded up to a unit.
 
     Which root is the first has been decided; here it is only placed. None where balls do not confirm it.
+
+    Parameters
+    ----------
+    start : t, x' and x - c at the launch.
     """
     balls = Balls(LIMITS.refine_bits)
     system = _system(osc, balls.bits)
     with balls_at(balls.bits):
-        tau, v = (evaluate(tree, {}, balls) for tree in (states.exact_tau(index), states.exact_v(index)))
+        launch = tuple(evaluate(tree, {}, balls) for tree in start)
         try:
-            hit = _halley(system, tau, v, balls.rational(Fraction(time)))
+            hit = _halley(system, launch, balls.rational(Fraction(time)))
         except (ArithmeticError, ValueError, TypeError):  # a ball that left the domain of log or a root
             return None
         return None if hit is None else [float(ball.mid()) for ball in hit]
 
 
-def _halley(system: LinearSystem, tau: Any, v: Any, time: Any) -> tuple[Any, Any] | None:
+def _halley(system: LinearSystem, launch: tuple[Any, ...], time: Any) -> tuple[Any, Any] | None:
     """Time and velocity of the hit next to a time, one step of Halley's method away; None when no step is small."""
     import flint
 
+    tau, v, at_first = launch
     angles = [(rate * tau + phase).sin_cos() for rate, phase in system.waves]
-    start = flint.arb_mat([[0], [v], [1], *([value] for sine, cosine in angles for value in (cosine, sine))])
+    start = flint.arb_mat([[at_first], [v], [1], *([value] for sine, cosine in angles for value in (cosine, sine))])
     for _ in range(STEPS):
         state = (system.matrix * time).exp() * start
         height, speed = state[0, 0], state[1, 0]

@@ -16,6 +16,7 @@ from singimpact.flights.kernels.state import (
     ACC,
     AT,
     COSINE,
+    HEIGHT,
     LANES,
     LATE,
     LOST,
@@ -37,7 +38,7 @@ from singimpact.flights.kernels.tabulated import tabulated_flight
 from singimpact.flights.kernels.waves import NEAREST, phase_of, quarters, reduced_twice, wall_acceleration
 
 
-def hit_batches(tau: Array, v: Array, model: Model, batch: Batch, out: Array, status: Array) -> int:
+def hit_batches(tau: Array, v: Array, heights: Array, model: Model, batch: Batch, out: Array, status: Array) -> int:
     """`entries.linear_hits` of `LANES` states or more; the last batch flies some states again."""
     lane, work, count, others = batch.lane, batch.work, len(tau), 0
     for begin in range(0, count, LANES):
@@ -45,7 +46,8 @@ def hit_batches(tau: Array, v: Array, model: Model, batch: Batch, out: Array, st
         for k in range(LANES):
             lane[AT + k], lane[LATE + k] = reduced_twice(tau[b + k], model.turn)
             lane[V + k] = v[b + k]
-            lane[MODE + k] = 0.0 if v[b + k] > 0 else 3.0
+            lane[HEIGHT + k] = heights[b + k] if batch.launched < 0 else 0.0
+            lane[MODE + k] = 0.0 if (v[b + k] > 0) | (batch.launched < 0) else 3.0
         if fly_batch(model, batch) > 0:
             respond(model, batch)
             judge_hits(lane, batch.X, model)
@@ -57,7 +59,9 @@ def hit_batches(tau: Array, v: Array, model: Model, batch: Batch, out: Array, st
             status[b + k] = 0 if lane[MODE + k] == 1.0 else AT_REST
             if lane[MODE + k] != 2.0:
                 continue
-            status[b + k], _a = linear_hit(lane[AT + k], lane[LATE + k], lane[V + k], 0.0, model, work)
+            status[b + k], _a = linear_hit(
+                lane[AT + k], lane[LATE + k], lane[V + k], lane[HEIGHT + k], 0.0, model, work
+            )
             for row in range(10):
                 out[row, b + k] = work.hit[row]
     for i in range(count):
@@ -89,7 +93,7 @@ def fly_batches(tau: Array, v: Array, count: int, w: Array, model: Model, batch:
                     continue
                 a = wall_acceleration(lane[AT + k], lane[LATE + k], model.numbers, model.rest, work.launch)
                 code, lane[TIME + k], lane[SPEED + k], _depth, _error = tabulated_flight(
-                    work.launch, lane[V + k], a, model, work.flight
+                    work.launch, lane[V + k], 0.0, a, model, work.flight
                 )
                 if code != 0:
                     status[b + k], lane[MODE + k] = code, 3.0
@@ -109,12 +113,12 @@ def fly_batch(model: Model, batch: Batch) -> int:
     """The number of states that fly: TIME and SPEED of a hit where the mode becomes 1."""
     lane, wave, table = batch.lane, batch.wave, batch.table
     launch_phases(lane, wave, model, table.step)
-    flying = isolate(lane, wave, model.numbers, model.rules.ulp, table)
+    flying = isolate(batch, model.numbers, model.rules.ulp)
     if flying > 0:
         turn_waves(lane, wave, batch.local, table.waves)
         expand(lane, batch.local, batch.series, batch.X)
-        quintic_guess(lane, table.step)
-        refine_roots(lane, batch.X, table.step, model.rules.horizon)
+        quintic_guess(lane, table.step, batch.launched)
+        refine_roots(batch, table.step, model.rules.horizon)
     return flying
 
 
@@ -146,7 +150,7 @@ def launch_phases(lane: Array, wave: Array, model: Model, step: float) -> None:
             lane[ACC + k] += by_cos * wave[c, k] + by_sin * wave[s, k]
             lane[SIZE + k] += abs(by_cos * wave[c, k]) + abs(by_sin * wave[s, k])
     for k in range(LANES):
-        cancels = (32 * abs(lane[ACC + k]) < lane[SIZE + k]) & (lane[V + k] < step * lane[SIZE + k])
+        cancels = (32 * abs(lane[ACC + k]) < lane[SIZE + k]) & (abs(lane[V + k]) < step * lane[SIZE + k])
         lane[MODE + k] = 2.0 if (lane[MODE + k] == 0.0) & cancels else lane[MODE + k]
 
 

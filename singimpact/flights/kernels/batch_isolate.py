@@ -16,34 +16,40 @@ from singimpact.flights.kernels.state import (
     COSINE,
     E0,
     E1,
+    HEIGHT,
     LANES,
     MODE,
     PLACE,
     RATE,
     SINE,
     SIZE_STEADY,
+    SIZE_X,
     U0,
     U1,
     V_BY_V,
+    V_BY_X,
     V_COS,
     V_SIN,
     V_STEADY,
     X_BY_V,
+    X_BY_X,
     X_COS,
     X_SIN,
     X_STEADY,
     Z0,
     Z1,
     Array,
+    Batch,
     Linear,
     Table,
     V,
 )
 
 
-def isolate(lane: Array, wave: Array, p: Linear, ulp: float, table: Table) -> int:
+def isolate(batch: Batch, p: Linear, ulp: float) -> int:
     """The number of states that fly; each then stands before a root (mode 1) or is left to `tabulated_flight` (2)."""
-    step, last, jerk = table.step, len(table.rows) - 1, 0.0
+    lane, wave, table, launched = batch.lane, batch.wave, batch.table, batch.launched
+    step, last, jerk, highest = table.step, len(table.rows) - 1, 0.0, 0.0
     # 2.3: on the first stride the remainder is compared with a multiple of the distance from the launch
     sixth = 2.3 * step * step * step * step * step * step / 46080.0
     by_x, by_u, steady = sixth * table.sixth[0], sixth * table.sixth[1], sixth * table.sixth[2]
@@ -54,13 +60,17 @@ def isolate(lane: Array, wave: Array, p: Linear, ulp: float, table: Table) -> in
         lane[Z0 + k], lane[U0 + k], lane[E0 + k] = 0.0, lane[V + k], lane[ACC + k] - p.damping * lane[V + k]
         lane[PLACE + k] = 0.0
         flying += 1 if lane[MODE + k] != 3.0 else 0
+    if launched < 0:
+        highest = lift_starts(lane, p)
     for m in range(last):
         ahead(lane, wave, p, table, m + 1)
         row = table.rows[m + 1]
-        by_v, rest = 4 * ulp * abs(row[X_BY_V]), 4 * ulp * row[SIZE_STEADY] + steady
+        if launched < 0:
+            lift(lane, p, row)
+        by_v, rest = 4 * ulp * abs(row[X_BY_V]), 4 * ulp * (row[SIZE_STEADY] + highest * row[SIZE_X]) + steady
         going, doubtful = go_on(lane, step, by_x, by_u, by_v, rest)
         if doubtful > 0:
-            going += judge_steps(lane, step, jerk, p)
+            going += judge_steps(lane, step, jerk, p, launched)
         if going == 0:
             break
     for k in range(LANES):
@@ -92,6 +102,28 @@ def ahead(lane: Array, wave: Array, p: Linear, table: Table, m: int) -> None:
             lane[E1 + k] += e if go else 0.0
 
 
+def lift_starts(lane: Array, p: Linear) -> float:
+    """The largest height; every state starts at its own."""
+    highest = 0.0
+    for k in range(LANES):
+        height = lane[HEIGHT + k]
+        lane[Z0 + k] = height
+        lane[E0 + k] -= p.stiffness * height
+        highest = height if height > highest else highest
+    return highest
+
+
+def lift(lane: Array, p: Linear, row: Array) -> None:
+    """`ahead` of states that start at a height."""
+    by_z, by_u = row[X_BY_X], row[V_BY_X]
+    by_e = -p.damping * by_u - p.stiffness * by_z
+    for k in range(LANES):
+        height = lane[HEIGHT + k] if lane[MODE + k] == 0.0 else 0.0
+        lane[Z1 + k] += height * by_z
+        lane[U1 + k] += height * by_u
+        lane[E1 + k] += height * by_e
+
+
 def go_on(lane: Array, step: float, by_x: float, by_u: float, by_v: float, rest: float) -> tuple[int, int]:
     """The number of states that go on, by the Bernstein coefficients of p alone, and of the doubtful ones: mode -1."""
     fifth, twentieth = step * 0.2, step * step / 20.0
@@ -104,7 +136,7 @@ def go_on(lane: Array, step: float, by_x: float, by_u: float, by_v: float, rest:
         low, high = (b1 if b1 < b2 else b2), (b3 if b3 < b4 else b4)
         low = low if low < high else high
         low = low if low < z1 else z1
-        room = by_x * abs(z0) + by_u * abs(u0) + by_v * lane[V + k] + rest
+        room = by_x * abs(z0) + by_u * abs(u0) + by_v * abs(lane[V + k]) + rest
         lane[BOUND + k] = room
         # nan is doubtful
         flies, go = lane[MODE + k] == 0.0, (lane[MODE + k] == 0.0) & (low > room)
@@ -116,7 +148,7 @@ def go_on(lane: Array, step: float, by_x: float, by_u: float, by_v: float, rest:
     return going, doubtful
 
 
-def judge_steps(lane: Array, step: float, jerk: float, p: Linear) -> int:
+def judge_steps(lane: Array, step: float, jerk: float, p: Linear, first: float) -> int:
     """The number of doubtful states that go on after all; the others stand before a root or are handed over.
 
     The differences d and c of the Bernstein coefficients are those of p' and p''; `room` covers their bounds too.  When
@@ -129,7 +161,7 @@ def judge_steps(lane: Array, step: float, jerk: float, p: Linear) -> int:
 
     Parameters
     ----------
-    jerk : the largest derivative of the force.
+    jerk : the largest derivative of the force. first : see `Batch.launched`.
     """
     # the control points: b0 = x, b1 = x + h x'/5, b2 = x + 2 h x'/5 + h^2 x''/20, and the same from the other end
     fifth, twentieth, going = step * 0.2, step * step / 20.0, 0
@@ -137,7 +169,7 @@ def judge_steps(lane: Array, step: float, jerk: float, p: Linear) -> int:
     for k in range(LANES):
         z0, u0, e0 = lane[Z0 + k], lane[U0 + k], lane[E0 + k]
         z1, u1, e1 = lane[Z1 + k], lane[U1 + k], lane[E1 + k]
-        v, room, launched = lane[V + k], lane[BOUND + k], lane[PLACE + k] == 0.0
+        v, room, launched = lane[V + k], lane[BOUND + k], lane[PLACE + k] == first
         d0, d4, c0, c3 = fifth * u0, fifth * u1, twentieth * e0, twentieth * e1
         b1, b4, d1, d3 = z0 + d0, z1 - d4, d0 + c0, d4 - c3
         b2, b3 = b1 + d1, b4 - d3

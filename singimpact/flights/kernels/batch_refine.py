@@ -22,6 +22,7 @@ from singimpact.flights.kernels.state import (
     Z0,
     Z1,
     Array,
+    Batch,
 )
 
 
@@ -56,10 +57,10 @@ def expand(lane: Array, local: Array, series: Array, X: Array) -> None:
         X[2, k] = 0.5 * lane[E0 + k]
 
 
-def quintic_guess(lane: Array, step: float) -> None:
-    """TIME becomes the root of the quintic on the step."""
+def quintic_guess(lane: Array, step: float, launched: float) -> None:
+    """TIME becomes the root of the quintic on the step; launched : see `Batch`."""
     for k in range(LANES):
-        first = lane[PLACE + k] == 0.0
+        first = lane[PLACE + k] == launched
         z0, rise = lane[Z0 + k], lane[Z1 + k] - lane[Z0 + k]
         d0, d1 = step * lane[U0 + k], step * lane[U1 + k]
         c0, c1 = step * step * lane[E0 + k] * 0.5, step * step * lane[E1 + k] * 0.5
@@ -80,11 +81,12 @@ def quintic_guess(lane: Array, step: float) -> None:
         lane[TIME + k] = y * step
 
 
-def refine_roots(lane: Array, X: Array, step: float, horizon: float) -> None:
+def refine_roots(batch: Batch, step: float, horizon: float) -> None:
     """TIME and SPEED of the hit; a state whose steps are not as small as they must be is handed over."""
-    halley_step(lane, X, step, 1e-2)
+    lane = batch.lane
+    halley_step(batch, step, 1e-2)
     # the error of the root becomes the cube of this, and that of the velocity its square
-    halley_step(lane, X, step, 2e-8)
+    halley_step(batch, step, 2e-8)
     for k in range(LANES):
         x = lane[TIME + k]
         lane[TIME + k] = lane[PLACE + k] * step + x
@@ -92,10 +94,11 @@ def refine_roots(lane: Array, X: Array, step: float, horizon: float) -> None:
         lane[MODE + k] = 2.0 if (lane[MODE + k] == 1.0) & (not good) else lane[MODE + k]
 
 
-def halley_step(lane: Array, X: Array, step: float, small: float) -> None:
+def halley_step(batch: Batch, step: float, small: float) -> None:
     """A step of Halley's method for TIME, and SPEED there; it must be this small, in steps of the table."""
+    lane, X, launched = batch.lane, batch.X, batch.launched
     for k in range(LANES):
-        first = lane[PLACE + k] == 0.0
+        first = lane[PLACE + k] == launched
         x = lane[TIME + k]
         value, slope, bend = X[BATCH_ORDER, k], 0.0, 0.0
         for i in range(BATCH_ORDER - 1, 0, -1):

@@ -28,6 +28,7 @@ from singimpact.flights.kernels.state import (
     FLIGHT_TIME,
     FREE,
     GROWTH,
+    HEIGHT,
     LANES,
     MODE,
     RATE,
@@ -164,11 +165,11 @@ def judge_hits(lane: Array, X: Array, model: Model) -> None:
             max(abs(lane[AT + k]), time), v, time, u, e, variation
         )
         reach = min(time, wide)
-        largest = (v + strength * reach) * lane[GROWTH + k]
+        largest = (abs(v) + p.fastest * lane[HEIGHT + k] + strength * reach) * lane[GROWTH + k]
         late, off = rounded(time, u, e, largest * reach, largest, p.fastest, rules.likely)
         rough = is_rough(late, off, condition, velocity_condition, rules)
         # as in `hits.linear_hit`
-        rough = rough & ((time > model.table.step) | (lane[ACC + k] >= 0))
+        rough = rough & ((time > model.table.step) | (lane[ACC + k] >= 0) | (lane[HEIGHT + k] > 0))
         lane[MODE + k] = 2.0 if rough & (lane[MODE + k] == 1.0) else lane[MODE + k]
         X[FLIGHT_TIME, k], X[VELOCITY, k] = time, u
         X[CONDITION, k], X[VELOCITY_CONDITION, k] = condition, velocity_condition

@@ -70,7 +70,7 @@ def chatter_end(tau: float, v: float, search: Any, model: Any, work: Any, rows: 
             return REPEATS, tau, 0.0, n
         if n >= 2 * mark:
             mark, t_marked, v_marked = n, t, v
-        code, a = linear_hit(t, t_low, v, near if look < 0 else (inf if n == look else 0.0), model, work)
+        code, a = linear_hit(t, t_low, v, 0.0, near if look < 0 else (inf if n == look else 0.0), model, work)
         # the wall no longer presses: the mass has left it, or leaves it now
         if n > 0 and a >= 0:
             end = tau + (since - lost)
@@ -96,7 +96,7 @@ def chatter_end(tau: float, v: float, search: Any, model: Any, work: Any, rows: 
         if n >= len(rows):
             return NO_ROOM, tau, 0.0, n
         if code == PRESSED:
-            code, a = linear_hit(t, t_low, v, 0.0, model, work)
+            code, a = linear_hit(t, t_low, v, 0.0, 0.0, model, work)
         if code != 0 and code != NOT_REFINED:
             return code, tau, 0.0, n
         keep_flight(rows[n], since - lost, v, work.hit)

@@ -52,12 +52,13 @@ many flights at given times."""
 
 
 def linear_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, out: Any, status: Any) -> int:
-    """PREPARE, HITS, SEGMENT, RELEASES, PLACES or VARIATIONS of a linear model.
+    """PREPARE, HITS, DROPS, SEGMENT, RELEASES, PLACES or VARIATIONS of a linear model.
 
     Parameters
     ----------
     sizes : see `layout`. flat, scratch : of the model. tau, v : states. w : times; the part of a time below which
-        chatter ends an orbit, then constants of rho; orders of roots removed at rest. out : results. status : codes.
+        chatter ends an orbit, then constants of rho; orders of roots removed at rest; x - c at the start.
+    out : results. status : codes.
 
     Returns
     -------
@@ -74,8 +75,9 @@ def linear_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, 
     if kind == PREPARE:
         return prepare(model, work)
     states, speeds, codes = block(tau, 0, (count,)), block(v, 0, (count,)), block(status, 0, (count,))
-    if kind == HITS:
-        return linear_hits(states, speeds, model, work, block(out, 0, (10, count)), codes)
+    if kind in (HITS, DROPS):
+        heights = block(w, 0, (count if kind == DROPS else 0,))
+        return linear_hits(states, speeds, heights, model, work, block(out, 0, (10, count)), codes)
     if kind == RELEASES:
         return releases(states, block(w, 0, (count,)), model, work, block(out, 0, (10, count)), codes)
     if kind == PLACES:
@@ -84,10 +86,10 @@ def linear_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, 
 
 
 def batch_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, out: Any, status: Any) -> int:
-    """PREPARE_BATCH, HITS or ITERATE, whose last states come in place of tau, v; w : constants of rho."""
+    """PREPARE_BATCH, HITS, DROPS or ITERATE, whose last states come in place of tau, v; w as in `linear_entry`."""
     count = sizes[COUNT]
     model, work = linear_model(flat, sizes), scratch_of(scratch, sizes)
-    batch = batch_model(flat, scratch, sizes, work)
+    batch = batch_model(flat, scratch, sizes, work, -1.0 if sizes[KIND] == DROPS else 0.0)
     if sizes[KIND] == PREPARE_BATCH:
         tabulate(model.numbers, batch.table)
         bounds(model.numbers, batch.table)
@@ -95,8 +97,8 @@ def batch_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, o
         # states that a batch cannot decide are flown one by one
         return prepare(model, work)
     states, speeds, codes = block(tau, 0, (count,)), block(v, 0, (count,)), block(status, 0, (count,))
-    if sizes[KIND] == HITS:
-        return hit_batches(states, speeds, model, batch, block(out, 0, (10, count)), codes)
+    if sizes[KIND] in (HITS, DROPS):
+        return hit_batches(states, speeds, block(w, 0, (count,)), model, batch, block(out, 0, (10, count)), codes)
     fly_batches(states, speeds, sizes[IMPACTS], block(w, 0, (sizes[RHO],)), model, batch, codes)
     return 0
 
@@ -128,14 +130,19 @@ def prepare(model: Any, work: Any) -> int:
     return 0
 
 
-def linear_hits(tau: Any, v: Any, model: Any, work: Any, out: Any, status: Any) -> int:
-    """`linear_hit` of every state; how many codes are not 0 is returned."""
+def linear_hits(tau: Any, v: Any, heights: Any, model: Any, work: Any, out: Any, status: Any) -> int:
+    """`linear_hit` of every state; how many codes are not 0 is returned.
+
+    Parameters
+    ----------
+    heights : x - c > 0 at the launches; empty for launches from the wall.
+    """
     others = 0
     for i in range(len(tau)):
-        code = AT_REST
-        if v[i] > 0:
+        code, height = AT_REST, (heights[i] if len(heights) > 0 else 0.0)
+        if v[i] > 0 or height > 0:
             t, t_low = reduced_twice(tau[i], model.turn)
-            code, _a = linear_hit(t, t_low, v[i], 0.0, model, work)
+            code, _a = linear_hit(t, t_low, v[i], height, 0.0, model, work)
         status[i] = code
         others += 1 if code != 0 else 0
         for k in range(10):

@@ -74,7 +74,7 @@ def plain_hit(t: float, t_low: float, v: float, model: Any, work: Any) -> Any:
         roots, s, slope = root_after_launch(v, a, -4 * v / a, model, work.flight)
         if roots == 1 and s <= model.table.step:
             return 0, a, s, slope * s
-    code, a = linear_hit(t, t_low, v, 0.0, model, work)
+    code, a = linear_hit(t, t_low, v, 0.0, 0.0, model, work)
     code = 0 if code == NOT_REFINED else code
     return code, a, work.hit[FLIGHT_TIME], work.hit[VELOCITY]
 

@@ -40,7 +40,7 @@ is needed to more digits than its sum has; a state with v = 0, which is not flow
 
 def next_hit(t: float, t_low: float, v: float, near: float, model: Any, work: Any) -> Any:
     """`linear_hit`; `flights.bind` puts `next_hit_in_steps` in its place for models without a closed form."""
-    return linear_hit(t, t_low, v, near, model, work)
+    return linear_hit(t, t_low, v, 0.0, near, model, work)
 
 
 def next_hit_in_steps(t: float, t_low: float, v: float, near: float, model: Any, work: Any) -> Any:
@@ -59,33 +59,34 @@ def placed_in_steps(t: float, t_low: float, model: Any, work: Any) -> float:  # 
     return nan
 
 
-def linear_hit(t: float, t_low: float, v: float, near: float, model: Any, work: Any) -> Any:
+def linear_hit(t: float, t_low: float, v: float, height: float, near: float, model: Any, work: Any) -> Any:
     """(code, a_c at the launch) of the flight of a linear model launched at t + t_low; a hit fills work.hit.
 
     Parameters
     ----------
-    near : the code is PRESSED where the chatter left is shorter than this part of the time on which a_c changes; 0 for
-        never.
+    v, height : x' and x - c at the launch. near : the code is PRESSED where the chatter left is shorter
+        than this part of the time on which a_c changes; 0 for never.
     """
     p, hit, launch = model.numbers, work.hit, work.launch
     a = wall_acceleration(t, t_low, p, model.rest, launch)
     if near > 0 and a < 0 and ends_soon(v, a, slope_of(p, launch), near, model.rules):
         return PRESSED, a
-    code, time, u, depth, bound = tabulated_flight(launch, v, a, model, work.flight)
+    code, time, u, depth, bound = tabulated_flight(launch, v, height, a, model, work.flight)
     hit[FLIGHT_TIME], hit[VELOCITY], hit[CONDITION], hit[VELOCITY_CONDITION] = time, u, depth, bound
     if code != 0:
         return code, a
-    by_v, by_v_dot, by_tau, by_tau_dot, size, speed = response(launch, v, time, p)
+    # the size of a motion from a height is that of one from the wall, as fast
+    by_v, by_v_dot, by_tau, by_tau_dot, size, speed = response(launch, abs(v) + p.fastest * height, time, p)
     at, at_low = sum_twice(t, t_low, time, 0.0)
     e = wall_acceleration(at, at_low, p, model.rest, work.flight.q) - p.damping * u
     conditioned(t, v, e, (by_v, by_v_dot, by_tau, by_tau_dot), hit)
     hit[TIME_ERROR], hit[VELOCITY_ERROR] = rounded(time, u, e, size, speed, p.fastest, model.rules.likely)
     rough = is_rough(hit[TIME_ERROR], hit[VELOCITY_ERROR], hit[CONDITION], hit[VELOCITY_CONDITION], model.rules)
     # a flight that is pressed back at once is a short series in t that loses nothing
-    if rough and (time > model.table.step or a >= 0):
+    if rough and (time > model.table.step or a >= 0 or height > 0):
         code = NOT_REFINED
     if code == NOT_REFINED and len(model.fine) > 0:
-        hit[FLIGHT_TIME], hit[VELOCITY], near = refine_hit(t, t_low, v, time, model, work.twice)
+        hit[FLIGHT_TIME], hit[VELOCITY], near = refine_hit(t, t_low, v, height, time, model, work.twice)
         hit[TIME_ERROR], hit[VELOCITY_ERROR] = min(hit[TIME_ERROR], 3 * UNIT), min(hit[VELOCITY_ERROR], 63 * UNIT)
         code = 0
         if not near:
@@ -131,8 +132,8 @@ def at_the_hit(reach: float, v: float, time: float, u: float, e: float, variatio
     # x(T; tau, v) = c: by the implicit function theorem d T = -d x/x'; x' at the hit moves by d x' + x'' d T
     time_by_tau, time_by_v = -by_tau / u, -by_v / u
     velocity_by_tau, velocity_by_v = by_tau_dot + e * time_by_tau, by_v_dot + e * time_by_v
-    late = 1 + (abs(time_by_tau) * reach + abs(time_by_v) * v) / time
-    off = 1 + (abs(velocity_by_tau) * reach + abs(velocity_by_v) * v) / abs(u)
+    late = 1 + (abs(time_by_tau) * reach + abs(time_by_v * v)) / time
+    off = 1 + (abs(velocity_by_tau) * reach + abs(velocity_by_v * v)) / abs(u)
     return late, off, time_by_tau, time_by_v, velocity_by_tau, velocity_by_v
 
 

@@ -76,7 +76,7 @@ def linear_model(flat: Any, sizes: Any) -> Any:
     return Model(numbers, rest, table, rules_of(flat), block(flat, TURN, (5,)), fine)
 
 
-def batch_model(flat: Any, scratch: Any, sizes: Any, work: Any) -> Any:
+def batch_model(flat: Any, scratch: Any, sizes: Any, work: Any, launched: float) -> Any:
     """`state.Batch` behind the model and the scratch of one flight."""
     waves, rows = sizes[WAVES], sizes[ROWS]
     n = 3 + 2 * waves
@@ -88,7 +88,7 @@ def batch_model(flat: Any, scratch: Any, sizes: Any, work: Any) -> Any:
     lane, wave = block(scratch, free, (LANE_ROWS * LANES,)), block(scratch, free + LANE_ROWS * LANES, shape)
     free += (LANE_ROWS + 2 * waves) * LANES
     local, X = block(scratch, free, shape), block(scratch, free + 2 * waves * LANES, (BATCH_ORDER + 1, LANES))
-    return Batch(table, series, turn, lane, wave, local, X, work)
+    return Batch(table, series, turn, lane, wave, local, X, work, launched)
 
 
 def linear_length(sizes: Any) -> int:

@@ -98,8 +98,14 @@ def triple(a: complex, b: complex, c: complex, t: float) -> complex:
     return total * t * t * turning(mean, t)
 
 
-def restart(launch: Any, v: float, time: float, z: float, u: float, noise: float, ulp: float, p: Any) -> Any:  # noqa: ARG001
-    """x - c and x' at `time`, from the launch, so that errors of earlier steps do not enter; and their errors."""
+def restart(launch: Any, start: Any, time: float, z: float, u: float, noise: float, ulp: float, p: Any) -> Any:  # noqa: ARG001
+    """x - c and x' at `time`, from the launch, so that errors of earlier steps do not enter; and their errors.
+
+    Parameters
+    ----------
+    start : x - c and x' at the launch.
+    """
+    height, v = start
     root = complex_sqrt(complex(p.damping * p.damping / 4 - p.stiffness))
     a, b = -p.damping / 2 + root, -p.damping / 2 - root
     free = pair(a, b, time)
@@ -113,6 +119,9 @@ def restart(launch: Any, v: float, time: float, z: float, u: float, noise: float
         forced = wave * triple(a, b, rate, time)
         moved = wave * free + rate * forced
         z, u, size = z + forced.real, u + moved.real, size + abs(forced) + abs(wave) * abs(free) / p.fastest
+    if height > 0:
+        still = height * (slope + p.damping * free)
+        z, u, size = z + still.real, u - height * p.stiffness * free.real, size + abs(still)
     return z, u, ulp * size * (1 + p.fastest * time)
 
 
@@ -285,7 +294,7 @@ def place_of(launch: Any, v: float, push: float, height: float, time: float, p: 
             forced, moved = answered(even, odd, p.waves[j, RATE], c, s, free, slope, p)
             z, u = z + forced, u + moved
     else:
-        z, u, _error = restart(launch, v, time, 0.0, 0.0, 0.0, 0.0, p)
+        z, u, _error = restart(launch, (0.0, v), time, 0.0, 0.0, 0.0, 0.0, p)
     # the free motion from (1, 0) is the derivative of the one from (0, 1), and d times that one
     return z + height * (slope + p.damping * free), u - height * p.stiffness * free
 

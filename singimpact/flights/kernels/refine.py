@@ -95,11 +95,11 @@ def move_twice(space: Any, h: float, h_low: float, p: Any, rest: Any) -> None:
             break
 
 
-def state_after(t: float, t_low: float, v: float, time: float, model: Any, space: Any) -> None:
-    """space[0] becomes y at `time` after the launch with velocity v at t + t_low."""
+def state_after(t: float, t_low: float, v: float, height: float, time: float, model: Any, space: Any) -> None:
+    """space[0] becomes y at `time` after the launch from x - c = height with velocity v at t + t_low."""
     p, rest, fine, step = model.numbers, model.rest, model.fine, model.table.step
     y = space[0]
-    y[0, 0], y[0, 1], y[1, 0], y[1, 1], y[2, 0], y[2, 1] = 0.0, 0.0, v, 0.0, 1.0, 0.0
+    y[0, 0], y[0, 1], y[1, 0], y[1, 1], y[2, 0], y[2, 1] = height, 0.0, v, 0.0, 1.0, 0.0
     for j in range(len(p.waves)):
         now, low = p.waves[j], rest.waves[j]
         angle, left = phase_of(t, t_low, now[RATE], low[RATE], now[PHASE], low[PHASE])
@@ -116,11 +116,11 @@ def state_after(t: float, t_low: float, v: float, time: float, model: Any, space
     move_twice(space, left, left_low, p, rest)
 
 
-def refine_hit(t: float, t_low: float, v: float, time: float, model: Any, space: Any) -> Any:
+def refine_hit(t: float, t_low: float, v: float, height: float, time: float, model: Any, space: Any) -> Any:
     """Flight time and velocity of a hit known to be near `time`, and whether Halley's method settled there."""
     p, y = model.numbers, space[0]
     for _ in range(4):
-        state_after(t, t_low, v, time, model, space)
+        state_after(t, t_low, v, height, time, model, space)
         u = y[1, 0]
         e = p.steady - p.damping * u - p.stiffness * y[0, 0]
         jerk = -p.stiffness * u

@@ -143,6 +143,8 @@ LANES, LANE_ROWS = 64, 19
 V, AT, LATE, ACC, SIZE, SINCE, LOST, TURNS = range(0, 8 * LANES, LANES)
 """v, the launch time in two parts, a_c and the size of its terms there; of an orbit the time since the start, what its
 sum has lost, whole periods less."""
+HEIGHT = SINCE
+"""x - c at the launch of a flight that is no part of an orbit."""
 MODE, PLACE, TIME, SPEED = range(8 * LANES, 12 * LANES, LANES)
 """What becomes of the flight (0 flies, 1 a plain crossing, 2 left to `tabulated_flight`, 3 over); its step; time and
 velocity of the hit."""
@@ -178,7 +180,8 @@ class Batch(NamedTuple):
     x - c, x', 1 and cosine and sine of the waves there. turn : the period in two parts, the first of 33 bits, and its
     inverse. lane : see `LANES`. wave, local : cosines of all waves, then their sines, at the launches and at the steps
     of the hits; were they side by side, rows that a loop writes would seem to overlap, and it would stay scalar. X :
-    Taylor coefficients; then the columns of the hits. work : scratch of one flight.
+    Taylor coefficients; then the columns of the hits. work : scratch of one flight. launched : the step on which t = 0
+    is a root, 0; -1 where all start off the wall.
     """
 
     table: Table
@@ -189,3 +192,4 @@ class Batch(NamedTuple):
     local: Any
     X: Any
     work: Flying
+    launched: Any

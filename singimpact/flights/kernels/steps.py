@@ -158,6 +158,6 @@ def quiet_in_steps(z: Any, u: Any, W: Any, p: Any) -> Any:  # noqa: ARG001
     return 0 * z
 
 
-def state_kept(launch: Any, v: Any, time: Any, z: Any, u: Any, noise: Any, ulp: Any, p: Any) -> Any:  # noqa: ARG001
+def state_kept(launch: Any, start: Any, time: Any, z: Any, u: Any, noise: Any, ulp: Any, p: Any) -> Any:  # noqa: ARG001
     """`restart` of a Taylor flow: the state a step ends in is the state the next one starts from."""
     return z, u, noise

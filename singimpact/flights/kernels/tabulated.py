@@ -37,39 +37,40 @@ from singimpact.flights.kernels.state import (
 from singimpact.flights.kernels.taylor import taylor_flight
 
 
-def tabulated_flight(launch: Any, v: float, acceleration: float, model: Any, work: Any) -> Any:
-    """(status, flight time, velocity, depth, bound) of the flight from x = c with v > 0, as `taylor_flight`.
+def tabulated_flight(launch: Any, v: float, height: float, acceleration: float, model: Any, work: Any) -> Any:
+    """(status, flight time, velocity, depth, bound) of a flight, as `taylor_flight`.
 
     Parameters
     ----------
-    launch : cosine and sine of every wave. acceleration : a_c at the launch. model, work : see `state`.
+    launch : cosine and sine of every wave. v, height : x' and x - c at the start, v > 0 where height = 0.
+    acceleration : a_c at the launch. model, work : see `state`.
     """
     p, table, W = model.numbers, model.table, work.W
     step, ulp, horizon = table.step, model.rules.ulp, max(model.rules.horizon, model.rules.reach * v)
     waves, last = len(p.waves), len(table.rows) - 1
-    start, z0, u0, base = 0.0, 0.0, v, 0.0
+    start, z0, u0, base = 0.0, height, v, 0.0
     for j in range(waves):
         W[2 * j, 0], W[2 * j + 1, 0] = launch[2 * j], launch[2 * j + 1]
-    if acceleration < 0 and -16 * v > acceleration * step:
+    if height == 0 and acceleration < 0 and -16 * v > acceleration * step:
         # a low velocity returns near 2 v/|a|, and few terms are enough
         code, s, slope = root_after_launch(v, acceleration, -4 * v / acceleration, model, work)
         if code == 1 and s <= horizon:
             return 0, s, slope * s, 0.0, 0.0
     h2, sixth = step * step / 20.0, step * step * step * step * step * step / 46080.0
     # a literal 0 is a type of its own: every function that takes m would be compiled twice
-    z, u, e, noise, m = 0.0, v, acceleration - p.damping * v, 0.0, last - last
+    z, u, e, noise, m = height, v, acceleration - p.damping * v - p.stiffness * height, 0.0, last - last
     while True:
         if m == last:
             # the table ends: its last state is the next start, from the closed form and so without accumulated error
             start += last * step
-            z0, u0, base = restarted(launch, v, start, z, u, model, work)
+            z0, u0, base = restarted(launch, (height, v), start, z, u, model, work)
             ahead = quiet(z0, u0, W, p)
             if ahead > last * step:
                 # far above the wall: tables in which no impact is possible are passed over
                 if start + ahead >= horizon:
                     return 3, start, u0, z0, base
                 start += ahead
-                z0, u0, base = restarted(launch, v, start, z0, u0, model, work)
+                z0, u0, base = restarted(launch, (height, v), start, z0, u0, model, work)
             z, u, m = z0, u0, last - last
             # a step of few rounding units of the time hides a root: a force of 1e-65 brings the mass back at 1e62
             if not abs(z) < 1e100 or not step > 64 * ulp * start:
@@ -93,11 +94,14 @@ def tabulated_flight(launch: Any, v: float, acceleration: float, model: Any, wor
             noise + noise1
         )
         time = start + m * step
-        if not (min(min(b1, b2), min(b3, b4)) > room and z1 > room and (z > room or time == 0.0)):
+        if not (min(min(b1, b2), min(b3, b4)) > room and z1 > room and (z > room or is_launch(time, z))):
             between = Interval(time, m, z, u, e, z1, u1, e1, noise, noise1, room)
             code, s, slope = resolve_step(v, acceleration, between, model, work)
             if code == 2:
-                return taylor_flight(launch, v, 1, acceleration, p, model.rules, work, W[:0])
+                removed, work.q[0] = (1 if height == 0 else 0), height
+                return taylor_flight(
+                    launch, v, removed, acceleration - p.stiffness * height, p, model.rules, work, W[:0]
+                )
             if code == 1:
                 if time + s > horizon:
                     return 3, time, u, z, noise
@@ -108,14 +112,24 @@ def tabulated_flight(launch: Any, v: float, acceleration: float, model: Any, wor
         m += 1
 
 
-def restarted(launch: Any, v: float, start: float, z: float, u: float, model: Any, work: Any) -> Any:
-    """(x - c, x', error) where a table begins again; the waves in `work` are turned to there."""
+def is_launch(time: float, z: float) -> bool:
+    """Whether a step begins with a launch from the wall: the root t = 0 is no impact."""
+    return time == 0.0 and z == 0.0
+
+
+def restarted(launch: Any, first: Any, start: float, z: float, u: float, model: Any, work: Any) -> Any:
+    """(x - c, x', error) where a table begins again; the waves in `work` are turned to there.
+
+    Parameters
+    ----------
+    first : x - c and x' at the launch. start : the time since then.
+    """
     p, W = model.numbers, work.W
     for j in range(len(p.waves)):
         turn_c, turn_s = cos(p.waves[j, RATE] * start), sin(p.waves[j, RATE] * start)
         W[2 * j, 0] = launch[2 * j] * turn_c - launch[2 * j + 1] * turn_s
         W[2 * j + 1, 0] = launch[2 * j + 1] * turn_c + launch[2 * j] * turn_s
-    return restart(launch, v, start, z, u, 0.0, model.rules.ulp, p)
+    return restart(launch, first, start, z, u, 0.0, model.rules.ulp, p)
 
 
 def resolve_step(v: float, acceleration: float, between: Any, model: Any, work: Any) -> Any:
@@ -124,7 +138,7 @@ def resolve_step(v: float, acceleration: float, between: Any, model: Any, work: 
     step = table.step
     # how far x'' may be from the line through its ends
     bend = step * step / 8.0 * (table.fourth[0] * abs(between.z) + table.fourth[1] * abs(between.u) + table.fourth[2])
-    if between.time == 0.0:
+    if is_launch(between.time, between.z):
         # upwards and convex, or concave and above the obstacle at the end: no root
         if min(e, e1) > bend or (between.z1 > room and max(e, e1) < -bend):
             return 0, 0.0, 0.0
@@ -196,10 +210,19 @@ def turned_waves(m: int, model: Any, work: Any) -> int:
     return 2 * waves
 
 
+def expanded(between: Any, X: Any, model: Any, work: Any) -> int:
+    """The degree of the Taylor coefficients of a step, which go into X."""
+    order, top = model.rules.short, turned_waves(between.m, model, work)
+    series(between.z, between.u, order, model.numbers, model.table.taylor, X, work.W, top)
+    if between.time == 0.0:
+        # at a launch x'' has more digits than the sum of the waves
+        X[2] = between.e / 2
+    return int(order)
+
+
 def taylor_step(between: Any, model: Any, work: Any) -> Any:
     """The first root on a later step, from the state and the waves in the table."""
-    order, top = model.rules.short, turned_waves(between.m, model, work)
-    series(between.z, between.u, order, model.numbers, model.table.taylor, work.q, work.W, top)
+    order = expanded(between, work.q, model, work)
     code, s, slope, _depth, _bound = first_root(
         work.q, order, model.table.step * 17 / 16, between.noise, model.rules.ulp
     )
@@ -211,8 +234,7 @@ def monotone_step(between: Any, bend: float, model: Any, work: Any) -> Any:
 
     A falling or concave flight crosses once or not at all; a convex one is decided by its lowest point.
     """
-    X, order, step = work.X, model.rules.short, model.table.step
-    z, u, e, z1, u1, e1 = between.z, between.u, between.e, between.z1, between.u1, between.e1
+    X, step, u, e, z1, u1, e1 = work.X, model.table.step, between.u, between.e, between.z1, between.u1, between.e1
     noise = between.noise1 + between.noise
     convex = min(e, e1) > bend
     falls = u + u1 + step * (max(abs(e), abs(e1)) + bend) < 0
@@ -220,7 +242,7 @@ def monotone_step(between: Any, bend: float, model: Any, work: Any) -> Any:
         return 2, 0.0, 0.0
     if z1 > 0 and (not convex or u1 <= 0 or u >= 0):
         return 0, step, 0.0
-    series(z, u, order, model.numbers, model.table.taylor, X, work.W, turned_waves(between.m, model, work))
+    order = expanded(between, X, model, work)
     if z1 < 0:
         s = quintic_root(between, step)
     else:

@@ -26,7 +26,7 @@ def taylor_flight(
     ----------
     launch : cosine and sine of every wave, or the time of the launch. v : velocity >= 0.
     removed : how often t = 0 is a root of x - c: 1 for v > 0, more for a mass that lifts off at rest; 0 for a start off
-        the wall with any v, whose x - c is work.q[0]. Closed forms restart from the wall: not for linear models.
+        the wall with any v, whose x - c is work.q[0].
     acceleration : a_c at the launch when it is known better than the flow computes it, else nan.
     p : numbers of the model. rules : `state.Rules`. work : `state.Work`.
     trace : where its rows suffice, row i becomes time, x - c, x' at the start of step i and x'' there by the polynomial
@@ -37,6 +37,7 @@ def taylor_flight(
     time, z, u, noise, shift, z_lost, u_lost = zero, zero, v, zero, zero, zero, zero
     if removed == 0:
         z = q[0]
+    start = z, v
     if acceleration == acceleration:
         # the difference of the two values of a_c shifts X[2] on the first step: near a zero of a_c the recurrence has
         # few digits of it
@@ -56,7 +57,7 @@ def taylor_flight(
                 if time + ahead >= horizon:
                     return 3, time, u, z, noise
                 time += ahead
-                z, u, noise = restart(launch, v, time, z, u, noise, ulp, p)
+                z, u, noise = restart(launch, start, time, z, u, noise, ulp, p)
                 continue
         # a step below one rounding unit of the time
         if not h > ulp * time:
@@ -87,7 +88,7 @@ def taylor_flight(
         bend = curvature(X, order, h) if count + 1 < len(trace) else zero
         z, z_lost, u, u_lost, size = moved(X, z, z_lost, u, u_lost, order, h)
         time += h
-        z, u, noise = restart(launch, v, time, z, u, noise + ulp * size, ulp, p)
+        z, u, noise = restart(launch, start, time, z, u, noise + ulp * size, ulp, p)
         longest, shift, removed = 2 * h, zero, 0
     return 21, time, u, z, noise
 
@@ -140,7 +141,7 @@ def follow(launch: Any, v: Any, times: Any, p: Any, rules: Any, work: Any, out: 
     X, W, order, ulp = work.X, work.W, rules.order, rules.ulp
     zero = 0 * v
     time, z, u = zero, work.q[0], v
-    longest, pace = p[0] * 0 + 1, (1e300, 4.3, 1.0, 8.0)
+    start, longest, pace = (z, v), p[0] * 0 + 1, (1e300, 4.3, 1.0, 8.0)
     i = 0
     while i < len(times):
         coefficients(launch, time, z, u, zero, order, p, work)
@@ -156,4 +157,4 @@ def follow(launch: Any, v: Any, times: Any, p: Any, rules: Any, work: Any, out: 
         h = h if forward else -h
         z, u, _size = advanced(X, z, order, h)
         time += h
-        z, u, _noise = restart(launch, v, time, z, u, zero, ulp, p)
+        z, u, _noise = restart(launch, start, time, z, u, zero, ulp, p)
