@@ -26,6 +26,8 @@ STORED = Path(__file__).parents[1] / "data" / "limits.json"
 ArrayCall = Callable[[Array, Array], object]
 MOST = 1.5
 """A ratio may exceed the stored one by this factor."""
+OFF_WALL = 2.0
+"""First hits from the wall that a flight from off the wall may cost."""
 MODELS = {
     "linear": si.linear("2.8", "0.3", "0.8"),
     "Duffing": si.ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "cos(1.7*t)", "0.3", "0.8"),
@@ -126,7 +128,15 @@ def arrays(effort: Effort) -> list[Method]:
         rows.append(_drawn("first_hit", f"{name}, condition and error", with_errors, draw, _with_errors(model)))
         rows.append(_drawn("derivative", name, 2 * aim, draw, model.derivative))
         rows.append(_drawn("inverse_map", name, 2 * aim, draw, model.inverse_map))
+        if name in ("linear", "Duffing"):
+            rows.append(_drawn("first_hit", f"{name}, array", aim, draw, model.first_hit))
+            rows.append(_drawn("launch", f"{name}, array", 2 * aim, draw, _off_wall(model)))
     return rows
+
+
+def _off_wall(osc: si.ImpactOscillator) -> Callable[..., object]:
+    """Launches off the wall at drawn times with drawn velocities."""
+    return lambda t, xdot: osc.launch(x=0.5, xdot=xdot, t=t)
 
 
 # ---- calls of one state, and of ten
@@ -150,7 +160,7 @@ def calls(effort: Effort) -> list[Method]:
         osc = MODELS[name]
         ones: dict[str, tuple[Callable[..., object], float | None]] = {
             "first_hit": (osc.first_hit, None),
-            "launch": (lambda t, xdot, osc=osc: osc.launch(x=0.5, xdot=xdot, t=t), launch),
+            "launch": (_off_wall(osc), launch),
             "derivative": (osc.derivative, 10.0),
             "inverse_map": (osc.inverse_map, 10.0),
         }
@@ -209,12 +219,20 @@ def searches(effort: Effort) -> list[Method]:
 
 
 def over(rows: Sequence[Row]) -> list[str]:
-    """A sentence for each row that takes more than half again as long as its stored ratio to the reference allows."""
-    stored = json.loads(STORED.read_text(encoding="utf-8"))
-    return [
+    """A sentence for each row that takes more than half again as long as its stored ratio to the reference allows, and
+    for launches off the wall that take longer than two first hits.
+    """
+    stored, own = json.loads(STORED.read_text(encoding="utf-8")), dict(_named(rows))
+    slow = [
         f"{key}: {row.spread[0]:.3g} times the reference, {stored.get(key, 0):.3g} stored"
-        for key, row in _named(rows)
+        for key, row in own.items()
         if not row.spread[0] <= MOST * stored.get(key, 0)
+    ]
+    hits = {key: own.get(key.replace(": launch,", ": first_hit,")) for key in own if ": launch," in key}
+    return slow + [
+        f"{key}: {own[key].spread[0] / hit.spread[0]:.3g} first hits, at most {OFF_WALL:g}"
+        for key, hit in hits.items()
+        if hit is not None and own[key].spread[0] > OFF_WALL * hit.spread[0]
     ]
 
 
