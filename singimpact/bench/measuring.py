@@ -35,7 +35,7 @@ class Effort:
     least : CPU seconds of a timing at least, reached by calling again; the clock ticks in microseconds.
     once : a method that takes so many seconds is timed once after the first round: its noise is below its length.
     fresh : rounds of a method that runs in a process of its own, which costs a second beside what is timed.
-    states : of a regime. judged : random states whose answers are compared with the truth.
+    judged : random states whose answers are compared with the truth.
     """
 
     quick: bool = False
@@ -43,12 +43,11 @@ class Effort:
     least: float = 2e-3
     once: float = 2.0
     fresh: int = 3
-    states: int = 40
     judged: int = 400
 
 
 FULL = Effort()
-QUICK = Effort(quick=True, rounds=3, least=5e-4, once=0.02, fresh=1, states=4, judged=40)
+QUICK = Effort(quick=True, rounds=3, least=5e-4, once=0.02, fresh=1, judged=40)
 
 
 @dataclass(frozen=True)
@@ -120,24 +119,19 @@ class Method:
     ----------
     name, setting : as the table shows them; one that begins with "singimpact" calls public names only, "kernel" is a
         private function of the package. run : gives an answer a problem; None or nan where it has none.
-    size : what the cost grows with.
     epsilon : of the arithmetic; answers may be off by ten times their condition times this.
     problems : by which the time of a run is divided; without it by its answers.
-    first : the first round is what is asked: what is computed then is kept.
     draw : makes other problems for every timed call, outside the clock; `run` takes them. The first ones are judged.
-    aim : what is to be reached. counts : the answer is how much work there was: terms of a series.
+    aim : what is to be reached.
     """
 
     name: str
     setting: str
     run: Callable[..., Any]
-    size: float | None = None
     epsilon: float = EPSILON
     problems: int | None = None
-    first: bool = False
     draw: Callable[[], Any] | None = None
     aim: Aim = NO_AIM
-    counts: bool = False
 
 
 @dataclass(frozen=True)
@@ -149,7 +143,6 @@ class Case:
     truth : a number or its decimal text a problem; empty where only time is measured.
     conditions : of the problems. skipped : peers that are not installed.
     missed : relative error of another answer altogether: the next impact is further away than this.
-    notes : sentences below the table.
     """
 
     name: str
@@ -158,7 +151,6 @@ class Case:
     conditions: Sequence[float] = ()
     skipped: Sequence[str] = ()
     missed: float = 1e-2
-    notes: Sequence[str] = ()
 
 
 @dataclass(frozen=True)
@@ -172,14 +164,12 @@ class Row:
         absent or off by more than a hundredth: another impact. of : problems.
     ratio, spread : time over that of the first method of the case, median and quartiles. rounds : timings.
     aim : what is to be reached. reached : whether it is, with no answer wrong; None without an aim.
-    work : what there was to compute, in units that the method counts; its size without such.
     """
 
     group: str
     case: str
     method: str
     setting: str
-    size: float | None
     microseconds: float
     error: float | None
     wrong: int | None
@@ -190,17 +180,15 @@ class Row:
     rounds: int
     aim: Aim
     reached: bool | None
-    work: float | None = None
 
 
 @dataclass
 class Measured:
-    """The rows of a group, the peers that were not installed, and sentences about its cases."""
+    """The rows of a group, and the peers that were not installed."""
 
     group: str
     rows: list[Row] = field(default_factory=list)
     skipped: list[str] = field(default_factory=list)
-    notes: list[str] = field(default_factory=list)
 
 
 def with_peers(own: Sequence[Method], *peers: Callable[[], Sequence[Method]]) -> tuple[list[Method], list[str]]:
@@ -238,18 +226,21 @@ class _Turn:
 
 def measure(group: str, case: Case, effort: Effort) -> list[Row]:
     """A row a method."""
+    # the first turn compiles; its answers are judged, its time is not counted unless it is the only one
     first = [_turn(method) for method in case.methods]
-    rounds = [_rounds(method, turn.fresh, effort) for method, turn in zip(case.methods, first, strict=True)]
+    rounds = [_rounds(turn.fresh, effort) for turn in first]
     begun = list(first)
     for at in (at for at, count in enumerate(rounds) if count):
         if not first[at].fresh:  # a process of its own is as cold the second time
             begun[at] = _turn(case.methods[at])
         if begun[at].seconds >= effort.once:
             rounds[at] = 0
+    # the clock ticks in microseconds: what is shorter is called several times within a round
     calls = [1 if turn.fresh else max(ceil(effort.least / max(turn.seconds, 1e-7)), 1) for turn in begun]
     spent = np.array([[turn.each for turn in begun]] * effort.rounds)
     for turn in range(effort.rounds):
         for at in (at for at, count in enumerate(rounds) if count):
+            # a method with fewer rounds repeats its measured times, so that each round has a ratio
             again = turn < rounds[at]
             spent[turn, at] = _turn(case.methods[at], calls[at]).each if again else spent[turn % rounds[at], at]
     return [
@@ -258,9 +249,9 @@ def measure(group: str, case: Case, effort: Effort) -> list[Row]:
     ]
 
 
-def _rounds(method: Method, fresh: bool, effort: Effort) -> int:
+def _rounds(fresh: bool, effort: Effort) -> int:
     """The number of rounds after the first; 0 where the first one is the measurement."""
-    if method.first or (fresh and effort.fresh == 1):
+    if fresh and effort.fresh == 1:
         return 0
     return min(effort.fresh, effort.rounds) if fresh else effort.rounds
 
@@ -317,7 +308,6 @@ def _row(group: str, case: Case, method: Method, turn: _Turn, timings: tuple[Any
         case.name,
         method.name,
         method.setting,
-        method.size,
         microseconds,
         error,
         wrong,
@@ -328,7 +318,6 @@ def _row(group: str, case: Case, method: Method, turn: _Turn, timings: tuple[Any
         rounds,
         method.aim,
         method.aim.reached(microseconds, middle, wrong),
-        float(answers[0]) if method.counts else method.size,
     )
 
 
@@ -362,6 +351,7 @@ def condition(function: Callable[[float, float], float], tau: float, v: float, s
     3.0
     """
     value = abs(function(tau, v))
+    # relative steps: tau and v are given to a relative rounding error each
     by_tau = function(tau * (1 + step), v) - function(tau * (1 - step), v)
     by_v = function(tau, v * (1 + step)) - function(tau, v * (1 - step))
     return 1 + (abs(by_tau) + abs(by_v)) / (2 * step * value)

@@ -1,17 +1,13 @@
-"""Measurements as tables, plain data and plots, with the exponents of power laws through measured times."""
+"""Measurements as tables, plain data and plots."""
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from math import sqrt
 from typing import Any
-
-import numpy as np
 
 from singimpact.bench.measuring import Measured, Row
 from singimpact.scenes.style import BLACK, DASH_DOT, DASHES, DOTS, GREY, OPEN, ORBIT_COLORS, SHADE, SKY, WHITE
 
 HEADER = ("case", "method", "setting", "time", "to reach", "error", "wrong", "missed", "times the first", "quartiles")
-GROWTH = ("case", "method", "time grows with the power", "+-", "the work with", "from", "to")
 Table = tuple[tuple[str, ...], list[list[str]]]
 
 NOTE = (
@@ -24,83 +20,9 @@ AIMED = (
 )
 
 
-# Growth of cost: the exponent of a power law through measured times, with its standard error.
-
-
-@dataclass(frozen=True)
-class Exponent:
-    """microseconds ~ size^exponent, fitted over sizes `least` to `most`; `error` is the standard error.
-
-    `work` is the exponent of what there is to compute, e.g. of the number of terms: what explains the growth.
-    """
-
-    case: str
-    method: str
-    exponent: float
-    error: float
-    least: float
-    most: float
-    points: int
-    work: float
-
-
-def fitted(sizes: Sequence[float], times: Sequence[float]) -> tuple[float, float]:
-    """Slope of the least-squares line through (log size, log time), and its standard error.
-
-    Parameters
-    ----------
-    sizes, times : positive numbers, three or more.
-
-    Examples
-    --------
-    >>> slope, error = fitted([1, 2, 4, 8], [3, 12, 48, 192])
-    >>> round(slope, 12), error < 1e-12
-    (2.0, True)
-    """
-    x, y = np.log(sizes), np.log(times)
-    away = x - x.mean()
-    squares = float(away @ away)
-    slope = float(away @ y) / squares
-    left = y - y.mean() - slope * away
-    return slope, sqrt(float(left @ left) / (len(x) - 2) / squares)
-
-
-def exponents(rows: Sequence[Row]) -> list[Exponent]:
-    """An exponent for each method of each case that was measured at three sizes or more."""
-    rows_ = []
-    for case, method in dict.fromkeys((row.case, row.method) for row in rows if row.size is not None):
-        line = [
-            (row.size, row.microseconds, row.work or row.size)
-            for row in rows
-            if (row.case, row.method) == (case, method) and row.size is not None
-        ]
-        sizes = [size for size, _, _ in line]
-        if len(set(sizes)) >= 3:
-            slope, error = fitted(sizes, [spent for _, spent, _ in line])
-            work, _ = fitted(sizes, [work for _, _, work in line])
-            rows_.append(Exponent(case, method, slope, error, min(sizes), max(sizes), len(line), work))
-    return rows_
-
-
-def tables(measured: Measured) -> list[Table]:
-    """Header and cells: the rows, then the exponents where there are such."""
-    result: list[Table] = [(HEADER, [_cells(row) for row in measured.rows])]
-    fits = exponents(measured.rows)
-    if fits:
-        cells = [
-            [
-                fit.case,
-                fit.method,
-                f"{fit.exponent:.2f}",
-                f"{fit.error:.2f}",
-                f"{fit.work:.2f}",
-                f"{fit.least:g}",
-                f"{fit.most:g}",
-            ]
-            for fit in fits
-        ]
-        result.append((GROWTH, cells))
-    return result
+def table(measured: Measured) -> Table:
+    """Header and cells, a line a row."""
+    return HEADER, [_cells(row) for row in measured.rows]
 
 
 def in_words(microseconds: float) -> str:
@@ -156,17 +78,11 @@ def skipped(found: Measured) -> str:
 
 
 def as_data(found: Measured) -> dict[str, Any]:
-    """Rows, exponents and what was skipped, as JSON takes them."""
-    fits = [{"group": found.group, **asdict(fit)} for fit in exponents(found.rows)]
-    return {
-        "rows": [asdict(row) for row in found.rows],
-        "exponents": fits,
-        "skipped": list(found.skipped),
-        "notes": list(found.notes),
-    }
+    """Rows and what was skipped, as JSON takes them."""
+    return {"rows": [asdict(row) for row in found.rows], "skipped": list(found.skipped)}
 
 
-# Run time against error, a panel a case and a line a method; where there is no error, against size, or bars. Method by
+# Run time against error, a panel a case and a line a method; bars where there is no error. Method by
 # colour and by marker, so that a grey copy tells them too; a hollow marker has missed an answer.
 
 COLORS = (*ORBIT_COLORS, BLACK, GREY)
@@ -204,8 +120,8 @@ def plotted(measured: Measured) -> Any:
         case: [row for row in measured.rows if row.case == case]
         for case in dict.fromkeys(r.case for r in measured.rows)
     }
-    drawn = {case: rows for case, rows in panels.items() if _axis(rows) != "none"}
-    bars = [row for rows in panels.values() if _axis(rows) == "none" for row in rows]
+    drawn = {case: rows for case, rows in panels.items() if any(row.error is not None for row in rows)}
+    bars = [row for case, rows in panels.items() if case not in drawn for row in rows]
     names = list(dict.fromkeys(row.method for rows in drawn.values() for row in rows))
     rows = -(-len(drawn) // SHEET.columns)
     columns = min(SHEET.columns, max(len(drawn), 1))
@@ -221,13 +137,6 @@ def plotted(measured: Measured) -> Any:
     return figure
 
 
-def _axis(rows: Sequence[Row]) -> str:
-    """The quantity on the horizontal axis of a case."""
-    if any(row.error is not None for row in rows):
-        return "error"
-    return "size" if len({row.size for row in rows} - {None}) > 1 else "none"
-
-
 def _look(names: Sequence[str], name: str) -> dict[str, Any]:
     at = names.index(name)
     return {
@@ -240,21 +149,19 @@ def _look(names: Sequence[str], name: str) -> dict[str, Any]:
 
 
 def _panel(axes: Any, case: str, rows: Sequence[Row], names: Sequence[str]) -> None:
-    kind, floor = _axis(rows), min([SHEET.floor, *(row.error for row in rows if row.error)])
+    floor = min([SHEET.floor, *(row.error for row in rows if row.error)])
     for name in dict.fromkeys(row.method for row in rows):
-        line = [row for row in rows if row.method == name and (kind == "size" or row.error is not None)]
-        if kind == "error":
-            line.sort(key=lambda row: (row.error, row.microseconds))
-        across = [row.error or floor if kind == "error" else float(row.size or 0) for row in line]
+        line = [row for row in rows if row.method == name and row.error is not None]
+        line.sort(key=lambda row: (row.error, row.microseconds))
+        across = [row.error or floor for row in line]
         look = _look(names, name)
         axes.loglog(across, [row.microseconds for row in line], **look)
         hollow = [(x, row.microseconds) for x, row in zip(across, line, strict=True) if row.missed]
         if hollow:
             axes.loglog(*zip(*hollow, strict=True), **{**look, "linestyle": "none", "markerfacecolor": WHITE})
-    if kind == "error":
-        _widened(axes)
+    _widened(axes)
     axes.set_title(case, fontsize=10)
-    axes.set_xlabel("relative error" if kind == "error" else "size", fontsize=9)
+    axes.set_xlabel("relative error", fontsize=9)
     axes.set_ylabel("microseconds of CPU", fontsize=9)
     axes.tick_params(which="both", labelsize=7)
     axes.grid(True, which="major", color=SHADE, linewidth=0.6)

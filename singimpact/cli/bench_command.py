@@ -252,9 +252,8 @@ def command(
     as_json: bool,
     output: str | None,
 ) -> None:
-    """Measure CPU times and compare them with other tools. The groups are public, map, orbit, regimes, chatter,
-    threshold, series, fixed-points, emitted, growth, commands, sweep, scale, branches, start, limit. The default is all
-    but public, which has twelve calls of the others beside loops of numba (with --quick without the last two).
+    """Measure CPU times and compare them with other tools. The groups are public, map, chatter, series,
+    limit. The default is all but public, which has twelve calls beside loops of numba (with --quick without limit).
 
     The group `limit` compares public calls with a reference computation of the same run; the exit code is 1 if a ratio
     is more than half above its stored one.
@@ -320,14 +319,14 @@ def _is_over(tables: list[Measured], store: bool) -> bool:
 
 
 def _joined(found: list[Measured]) -> dict[str, Any]:
-    """One list of rows, of exponents and of skipped peers for all groups."""
+    """One list of rows and of skipped peers for all groups."""
     from singimpact.bench.report import as_data
 
     parts = [as_data(each) for each in found]
-    joined: dict[str, Any] = {
-        key: [item for part in parts for item in part[key]] for key in ("rows", "exponents", "notes")
+    return {
+        "rows": [row for part in parts for row in part["rows"]],
+        "skipped": sorted({name for part in parts for name in part["skipped"]}),
     }
-    return {**joined, "skipped": sorted({name for part in parts for name in part["skipped"]})}
 
 
 def _page(public: Measured, output: str | None) -> str:
@@ -344,14 +343,14 @@ def _page(public: Measured, output: str | None) -> str:
 
 
 def _text(found: Measured, form: str) -> str:
-    from singimpact.bench.report import NOTE, reached, skipped, tables
+    from singimpact.bench.report import NOTE, reached, skipped, table
 
     laid_out = columns if form == "text" else markdown
     heading = found.group if form == "text" else f"## {found.group}"
-    parts = [heading, *(laid_out(header, cells) for header, cells in tables(found)), skipped(found)]
+    parts = [heading, laid_out(*table(found)), skipped(found)]
     if any(row.wrong is not None for row in found.rows):
         parts.append(NOTE)
-    parts += [reached(found), "\n".join(found.notes)]
+    parts.append(reached(found))
     return "\n\n".join(part for part in parts if part)
 
 

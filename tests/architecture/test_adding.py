@@ -90,11 +90,11 @@ def test_a_bench_row(copy, clone):
     assert steps(clone, "a bench row") == ["singimpact/bench/groups/GROUP_rows.py"]
     put(
         copy,
-        "singimpact/bench/groups/fixed_point_rows.py",
-        'ASKED = {"m3',
-        'ASKED = {"m3 and mu, r = 1/3": ("1/3", slice(1, 3)), "m3',
+        "singimpact/bench/groups/chatter_rows.py",
+        'states_case("duffing", 0.7, 1, effort)',
+        'states_case("duffing", 0.9, 1, effort)',
     )
-    assert "m3 and mu, r = 1/3" in run(copy, "-m", "singimpact", "bench", "fixed-points", "--quick")
+    assert "Duffing, r = 0.9, 1 state a call" in run(copy, "-m", "singimpact", "bench", "chatter", "--quick")
 
 
 TOY_EVENT = '''"""Toys: the velocity of the first impact is 0.3."""

@@ -25,14 +25,10 @@ from singimpact.bench import (
     Draws,
     Effort,
     Fed,
-    exponents,
-    fitted,
     flights,
     in_words,
-    measure,
     measured,
     numbers,
-    of_states,
     orbit,
     sizes_of,
     taylor_stepper,
@@ -42,25 +38,14 @@ from singimpact.bench import (
 from singimpact.bench.groups import series_rows
 from singimpact.cli import main
 
-SMALL = Effort(quick=True, rounds=1, least=0, once=0, fresh=1, states=1, judged=4)
-COSTLY = ("public", "series", "commands", "start", "scale", "branches", "orbit", "growth", "threshold", "sweep")
+SMALL = Effort(quick=True, rounds=1, least=0, once=0, fresh=1, judged=4)
+COSTLY = ("public", "series")
 EVENTS = {"scipy DOP853, terminal event", "heyoka, terminal event"}
 PEERS = {
     "public": {"heyoka", "scipy", "numba"},
     "map": EVENTS,
-    "orbit": EVENTS,
-    "regimes": {"scipy DOP853", "heyoka", "mpmath findroot", "mpmath odefun"},
     "chatter": {"scipy DOP853, 1e-9", "heyoka, 1e-9", "mpmath findroot, dps 30", *EVENTS},
-    "threshold": {"scipy DOP853, 1e-9", "heyoka, 1e-9", "mpmath findroot, dps 15", *EVENTS},
     "series": {"sympy, integrals and series", "sympy, implicit function"},
-    "fixed-points": {"mpmath findroot", "numpy roots"},
-    "emitted": {"sympy lambdify", "sympy lambdify, cse", "sympy subs"},
-    "growth": {"mpmath findroot", "scipy DOP853, 1e-9", "heyoka, 1e-9"},
-    "commands": set(),
-    "sweep": {"ThreadPoolExecutor.map", "ProcessPoolExecutor.map"},
-    "scale": set(),
-    "branches": set(),
-    "start": EVENTS,
     "limit": {"reference"},  # a command of .ci/check measures it
 }
 CUT = ("order", "tolerance")  # settings at which an answer is not meant to have all digits
@@ -75,26 +60,10 @@ def test_group_at_its_smallest_size(name):
     ours = [row for row in found.rows if row.method.startswith(("singimpact", "kernel"))]
     assert {row.method for row in found.rows} - {row.method for row in ours} == PEERS[name]
     assert all(row.microseconds > 0 for row in found.rows)
-    judged = [row for row in ours if row.wrong is not None and (name == "emitted" or not row.setting.startswith(CUT))]
+    judged = [row for row in ours if row.wrong is not None and not row.setting.startswith(CUT)]
     assert [row for row in judged if row.wrong] == []
-    assert judged or name in ("series", "growth", "commands", "sweep", "scale", "branches", "start")
+    assert judged or name == "series"
     assert not found.skipped
-
-
-@pytest.mark.slow
-def test_growth_is_shown_beside_that_of_the_work():
-    found = measured("growth", SMALL)
-    fits = {(fit.case, fit.method): fit for fit in exponents(found.rows)}
-    assert {case.split()[0] for case, _ in fits} >= {"order", "digits", "states", "impacts", "pixels"}
-    terms = fits[("order of gamma and of chatter_limit, symbols for the jets", "singimpact, chatter_limit")]
-    assert terms.work == pytest.approx(fitted((4, 5, 6), (40, 106, 257))[0])
-    assert fits[("pixels of basins", "kernel")].work == pytest.approx(1)
-
-
-def test_duffing_too():
-    """A quick look leaves this family out."""
-    first, *_ = measure("regimes", of_states("duffing", "generic", SMALL), SMALL)
-    assert (first.method, first.wrong) == ("singimpact, a call a state", 0)
 
 
 def test_map_shows_every_way_to_call_it():
@@ -138,7 +107,7 @@ def test_restitutions_are_taken_in_turn():
 
 def test_groups_of_a_quick_look(singimpact):
     assert set(GROUPS) == {*usual(FULL), "public"} == set(PEERS)
-    assert set(GROUPS) - set(usual(QUICK)) == {"public", "start", "limit"}
+    assert set(GROUPS) - set(usual(QUICK)) == {"public", "limit"}
     told = " ".join(singimpact("bench", "--help").stdout.split())
     assert [name for name in GROUPS if name not in told] == []
 
@@ -184,23 +153,21 @@ def test_series_gains_a_digit_and_more_by_orders(task):
 
 
 def test_command_writes_table_data_and_pictures(singimpact, tmp_path):
-    told = singimpact(
-        "bench", "fixed-points", "--quick", "--json", "-o", tmp_path / "b.json", "--plots", tmp_path / "p"
-    )
+    told = singimpact("bench", "chatter", "--quick", "--json", "-o", tmp_path / "b.json", "--plots", tmp_path / "p")
     assert told.exit_code == 0, told.output
     data = json.loads((tmp_path / "b.json").read_text())
-    named = "group case method setting size microseconds error wrong missed of ratio spread rounds aim reached work"
+    named = "group case method setting microseconds error wrong missed of ratio spread rounds aim reached"
     assert list(data["rows"][0]) == named.split()
     assert data["quick"] is True
     assert all(row["spread"][0] <= row["ratio"] <= row["spread"][1] for row in data["rows"])
-    assert [path.name for path in (tmp_path / "p").iterdir()] == ["bench-fixed-points.png"]
-    assert (tmp_path / "p" / "bench-fixed-points.png").read_bytes().startswith(b"\x89PNG")
+    assert [path.name for path in (tmp_path / "p").iterdir()] == ["bench-chatter.png"]
+    assert (tmp_path / "p" / "bench-chatter.png").read_bytes().startswith(b"\x89PNG")
 
 
 def test_markdown(singimpact):
-    told = singimpact("bench", "fixed-points", "--quick", "--format", "markdown")
+    told = singimpact("bench", "chatter", "--quick", "--format", "markdown")
     lines = told.stdout.splitlines()
-    assert lines[0] == "## fixed-points"
+    assert lines[0] == "## chatter"
     assert lines[2].startswith("| case | method | setting | time | to reach | error | wrong | missed |")
     assert len({line.count("|") for line in lines[2:] if line.startswith("|")}) == 1
 
@@ -301,7 +268,7 @@ def test_interrupted_run_leaves_nothing(singimpact, tmp_path, monkeypatch):
         raise KeyboardInterrupt
 
     monkeypatch.setattr("singimpact.bench.groups.measured", stopped)
-    told = singimpact("bench", "growth", "-o", tmp_path / "b.txt", "--plots", tmp_path / "p")
+    told = singimpact("bench", "chatter", "-o", tmp_path / "b.txt", "--plots", tmp_path / "p")
     assert told.exit_code == 130
     assert [path for path in tmp_path.rglob("*") if path.is_file()] == []
 
@@ -309,10 +276,10 @@ def test_interrupted_run_leaves_nothing(singimpact, tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [(("mapp",), "unknown group 'mapp': the nearest known are map"),
-     (("growth", "--plots", "{file}"), "cannot be written"),
-     (("growth", "-o", "{file}/absent/b.txt"), "cannot be written"),
-     (("growth", "--picture", "gif"), "'gif' is not one of"),
-     (("growth", "--format", "page"), "--format page is not accepted with growth")],
+     (("chatter", "--plots", "{file}"), "cannot be written"),
+     (("chatter", "-o", "{file}/absent/b.txt"), "cannot be written"),
+     (("chatter", "--picture", "gif"), "'gif' is not one of"),
+     (("chatter", "--format", "page"), "--format page is not accepted with chatter")],
 )  # fmt: skip
 def test_refused_before_anything_is_measured(arguments, told, singimpact, tmp_path, monkeypatch):
     monkeypatch.setattr("singimpact.bench.groups.measured", lambda *_: pytest.fail("it was measured"))

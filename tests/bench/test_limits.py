@@ -12,7 +12,7 @@ from singimpact.bench.groups import limit_rows
 from singimpact.bench.measuring import QUICK, Row
 
 CASES = {case.name: case for case in limit_rows.cases(QUICK)}
-ROW = Row("limit", "arrays", "singimpact, f", "ten", None, 3.0, None, None, None, 1, 3.0, (2.9, 3.1), 3, Aim(), None)
+ROW = Row("limit", "arrays", "singimpact, f", "ten", 3.0, None, None, None, 1, 3.0, (2.9, 3.1), 3, Aim(), None)
 
 
 def test_a_ratio_that_has_grown_by_half_is_over(monkeypatch, tmp_path):

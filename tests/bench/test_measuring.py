@@ -1,10 +1,9 @@
-"""Timer, judge, fit and picture on made-up methods whose cost and answers are known."""
+"""Timer, judge and picture on made-up methods whose cost and answers are known."""
 
 from __future__ import annotations
 
 import time
 
-import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 
@@ -18,12 +17,10 @@ from singimpact.bench import (
     Method,
     Timed,
     condition,
-    exponents,
-    fitted,
     measure,
     plotted,
     reached,
-    tables,
+    table,
 )
 
 EFFORT = Effort(rounds=5, least=0, once=100, fresh=5)
@@ -124,7 +121,7 @@ def test_an_aim_needs_right_answers():
     methods.append(Method("peer", "", fixed(5e-6, [2]), aim=Aim(times=4)))
     found = Measured("group", measure("group", Case("case", methods, ["1"]), EFFORT))
     assert [row.reached for row in found.rows] == [True, False, False, True]
-    ((_, cells),) = tables(found)
+    _, cells = table(found)
     assert [cell[4] for cell in cells] == ["2 us: reached", "2 us: missed", "2 us: missed", "4 times: reached"]
     assert "2 of 4 are reached" in reached(found)
     assert [line.split(", ")[1] for line in reached(found).splitlines() if line.startswith("missed")] == [
@@ -137,34 +134,13 @@ def test_condition():
     assert condition(lambda tau, v: tau**3 / v, 2.0, 0.1) == pytest.approx(5, rel=1e-6)
 
 
-@pytest.mark.parametrize("power", [-1.0, 0.5, 3.0])
-def test_exponent_with_noise_lies_within_its_error(power):
-    """Of 200 fits about 95 in a hundred lie within 2.5 standard errors (5 points: t with 3 degrees gives 91)."""
-    rng, sizes = np.random.default_rng(3), np.array([10, 30, 100, 300, 1000])
-    fits = [fitted(sizes, 7 * sizes**power * np.exp(rng.normal(0, 0.1, 5))) for _ in range(200)]
-    inside = sum(abs(slope - power) < 2.5 * error for slope, error in fits)
-    assert 170 < inside < 198
-
-
-def test_exponents_need_three_sizes():
-    def line(name, sizes):
-        return [Method(name, str(n), fixed(n**2.0, [None]), n) for n in sizes]
-
-    rows = measure("group", Case("case", [*line("three", (1, 2, 4)), *line("two", (1, 2))]), EFFORT)
-    (fit,) = exponents(rows)
-    assert (fit.method, fit.least, fit.most, fit.points) == ("three", 1, 4, 3)
-    assert fit.exponent == pytest.approx(2)
-
-
 def test_picture_shows_every_method_and_the_missed_ones_hollow():
     cases = [Case("judged", [Method("a", "1", fixed(1.0, [1])), Method("b", "1", fixed(2.0, [2]))], [1]),
-             Case("grown", [Method("a", str(n), fixed(float(n), [None]), n) for n in (1, 2)]),
              Case("timed", [Method("a", "once", fixed(3.0, [None]))])]  # fmt: skip
     found = Measured("group", [row for case in cases for row in measure("group", case, EFFORT)])
-    judged, grown, timed = plotted(found).axes
-    assert [axes.get_title() for axes in (judged, grown)] == ["judged", "grown"]
+    judged, timed = plotted(found).axes
+    assert judged.get_title() == "judged"
     hollow = [line for line in judged.lines if to_hex(line.get_markerfacecolor()) == "#ffffff" != line.get_color()]
     assert [(line.get_xdata()[0], line.get_ydata()[0]) for line in hollow] == [(1.0, 2e6)]
     assert len({(line.get_color(), line.get_marker()) for line in judged.lines}) == 2
-    assert grown.lines[0].get_xdata().tolist() == [1, 2]
     assert [bar.get_width() for bar in timed.patches] == [3.0]

@@ -12,28 +12,23 @@ import pytest
 
 import singimpact as si
 from singimpact.bench import (
-    COMMANDS as commands_COMMANDS,
+    BEFORE_SERIES,
     GROUPS,
-    MODELS,
-    PUBLIC,
+    SCRIPTS,
     SERIES,
     Case,
     Effort,
     Method,
     cost,
     cpu_seconds,
-    first_answer,
-    first_model,
     script,
 )
 from singimpact.bench.groups import series_rows
-from singimpact.cli import COMMANDS
 
 pytestmark = pytest.mark.plain_code  # compares code objects, which probes exchange
 PACKAGE = str(Path(si.__file__).parent)
 BENCH = str(Path(PACKAGE) / "bench")
-SMALL = Effort(quick=True, rounds=1, least=0, once=0, fresh=1, states=1, judged=4)
-IN_PROCESS = ["map", "orbit", "regimes", "chatter", "threshold", "fixed-points", "emitted", "growth"]
+SMALL = Effort(quick=True, rounds=1, least=0, once=0, fresh=1, judged=4)
 
 
 def public_code() -> set[CodeType]:
@@ -94,11 +89,7 @@ def _rows(group: str) -> list[tuple[Case, Method]]:
     return [(case, method) for case in GROUPS[group](SMALL) for method in case.methods]
 
 
-@pytest.mark.parametrize(
-    "group",
-    [each for each in IN_PROCESS if each != "orbit"]
-    + [pytest.param(each, marks=pytest.mark.slow) for each in ("public", "orbit")],
-)
+@pytest.mark.parametrize("group", ["map", "chatter", pytest.param("public", marks=pytest.mark.slow)])
 def test_rows_named_for_the_package_call_public_names_only(group):
     rows = [(case, method) for case, method in _rows(group) if method.name.startswith("singimpact")]
     assert rows
@@ -108,13 +99,6 @@ def test_rows_named_for_the_package_call_public_names_only(group):
         assert private == [], f"{case.name}: {method.name}, {method.setting}"
 
 
-@pytest.mark.parametrize("group", ["growth", "emitted"])
-def test_a_row_of_a_kernel_would_be_found(group):
-    for method in (method for _, method in _rows(group) if method.name.startswith("kernel")):
-        public, private = calls(_run(method))
-        assert private or not public
-
-
 def _executed(text: str, before: str) -> tuple[list[str], list[str]]:
     space: dict[str, object] = {}
     exec(compile(before, "<before>", "exec"), space)
@@ -122,12 +106,11 @@ def _executed(text: str, before: str) -> tuple[list[str], list[str]]:
 
 
 @pytest.mark.slow
-def test_commands_and_series_in_new_processes_call_public_names_only():
-    for each in SERIES:
-        public, private = _executed(each.made, PUBLIC + each.before)
+def test_series_of_the_limits_call_public_names_only():
+    for call in SERIES:
+        public, private = _executed(call, BEFORE_SERIES)
         assert len(public) == 1
         assert private == []
-    assert all(command.line.split()[0] in COMMANDS for command in commands_COMMANDS)
 
 
 def test_series_named_for_the_package_call_public_names_only():
@@ -141,12 +124,11 @@ def test_series_named_for_the_package_call_public_names_only():
     assert private == ["/contact/contact.py:generic", "/theory/impact_sheet.py:sheet"]
 
 
-@pytest.mark.parametrize("family", MODELS)
+@pytest.mark.parametrize("family", SCRIPTS)
 def test_scripts_of_new_processes_are_public(family):
-    for text in (first_model(family), first_answer(family), script(family, 10)):
-        public, private = _executed(text, "")
-        assert public
-        assert private == []
+    public, private = _executed(script(family, 10), "")
+    assert public
+    assert private == []
 
 
 BURN = "import time\nstart = time.process_time()\nwhile time.process_time() - start < 0.2: pass"

@@ -1,14 +1,11 @@
 """`bench chatter`: when infinitely many impacts accumulate: x'' + x = cos 2t, c = 0.3, from (1.2, 0.01), as close as
-wanted; and c = 0.7 or Duffing's model, from other states in every timed call.
-
-`bench threshold`: the v between complete and incomplete chatter: x'' + x = cos 2.8t, c = 0, r = 1/2, over pi/2.8, as
-close as wanted; and c = 0.3 or Duffing's model, over other phases in every timed call.
+wanted; and c = 0.7 or Duffing's model, from other states in every timed call. A threshold is a case of `bench public`.
 """
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
-from math import cos, pi
+from math import cos
 from typing import Any
 
 from singimpact.bench.drawn import CHATTERING, Draws, States, counted, model, pressing
@@ -123,80 +120,33 @@ def summed(name: str, fly: Any, draw: Draws) -> Method:
 
 # ---- thresholds
 
-END = 3 * pi / 2 / 2.8  # the next zero of a_c with a_c' > 0
-WIDTHS = (1e-3, 1e-6, 1e-9, 1e-12)
 # a peer starts to look from here; it flies this one and doubles it until contact is lost
 GUESS = 0.05
 
 
-def threshold_cases(effort: Effort) -> Iterator[Case]:
-    """One phase as close as wanted, then others by restitution, and an array; peers bisect, to a relative width."""
-    yield _threshold(effort)
-    for restitution in (0.5, 0.9) if effort.quick else (0.5, 0.7, 0.9, 0.99):
-        yield phases_case("linear", restitution, 1, effort)
-    yield phases_case("duffing", 0.7, 1, effort)
-    yield phases_case("linear", 0.5, effort.judged if effort.quick else 1000, effort)
-
-
-def _threshold(effort: Effort) -> Case:
-    osc = linear("2.8", 0, "0.5")
-    problem = Problem("linear", "chatter", 2.8, 0.0, 0.5, pi / 2.8, GUESS, "", "")
-    widths = WIDTHS[:2] if effort.quick else WIDTHS
-    own = [Method("singimpact", "doubles", lambda: [threshold(osc, "pi/2.8").v])]
-    own += [
-        Method("singimpact", f"digits {d}", lambda d=d: [threshold(osc, "pi/2.8", digits=d).v], epsilon=10.0**-d)
-        for d in ((30,) if effort.quick else (20, 30, 40))
-    ]
-    methods, skipped = with_peers(
-        own,
-        lambda: [_bisected("scipy DOP853, 1e-9", runge_kutta.stepper("linear", 1e-9), problem, w) for w in widths],
-        lambda: [_bisected("heyoka, 1e-9", taylor_events.stepper("linear", 1e-9), problem, w) for w in widths],
-        lambda: [_bisected("mpmath findroot, dps 15", many_digits.root_of_closed_form, problem, w) for w in widths[1:]],
-    )
-    kappa = condition(lambda tau, _: float(threshold(osc, tau).v), pi / 2.8, 1.0, 1e-4)
-    truth = values()["threshold.linear[w=2.8,c=0,r=0.5](pi/2.8)"]
-    return Case("linear, r = 0.5", methods, [truth], [kappa], skipped)
-
-
-def _bisected(name: str, fly: Callable[[Problem], tuple[Any, Any]], problem: Problem, width: float) -> Method:
-    return Method(name, f"to {width:.0e}", lambda: [followed_impacts.threshold(fly, problem, END, width)])
-
-
 PHASES = 5  # of a timed run of a phase a call
-JUDGED_PHASES = {("linear", 0.5): 3, ("linear", 0.7): 2, ("linear", 0.9): 1, ("linear", 0.99): 0, ("duffing", 0.7): 1}
-"""Phases with 20 digits: of Duffing's model it takes 10 s, and 50 s at r = 0.99, which is not judged."""
+JUDGED_PHASES = 3
 WIDTH = 1e-3  # relative width at which a peer's bisection ends
 
 
-def phases_case(family: str, restitution: float, count: int, effort: Effort) -> Case:
-    """Some calls of one phase, or one of an array."""
-    draw = partial(Draws, family, "chattering", restitution=restitution)
-    osc, run = model(family, restitution), _a_phase if count == 1 else _array_of_phases
-    setting, problems = f"{counted(count, 'phase')} a call", PHASES if count == 1 else count
-    own = [Method("singimpact, threshold", setting, run, problems=problems, draw=draw(problems))]
+def phases_case(restitution: float, effort: Effort) -> Case:
+    """Some calls of one phase of the linear model, judged with 20 digits; peers bisect to a relative width."""
+    draw = partial(Draws, "linear", "chattering", restitution=restitution)
+    osc, setting = model("linear", restitution), f"{counted(1, 'phase')} a call"
+    own = [Method("singimpact, threshold", setting, _a_phase, problems=PHASES, draw=draw(PHASES))]
     methods, skipped = with_peers(
         own,
-        lambda: [between(HEYOKA, taylor_stepper(family), draw(1))],
-        lambda: [between(SCIPY, runge_kutta.stepper(family, 1e-9), draw(1))],
+        lambda: [between(HEYOKA, taylor_stepper("linear"), draw(1))],
+        lambda: [between(SCIPY, runge_kutta.stepper("linear", 1e-9), draw(1))],
     )
-    judged = JUDGED_PHASES[family, restitution]
-    if effort.quick:
-        judged = min(judged, 1) if family == "linear" else 0
-    phases = draw(judged)().tau.tolist()
+    phases = draw(1 if effort.quick else JUDGED_PHASES)().tau.tolist()
     truth = [threshold(osc, tau, digits=20).v for tau in phases]
     kappas = [condition(lambda tau, _: float(threshold(osc, tau).v), tau, 1.0, 1e-4) for tau in phases]
-    name = "Duffing" if family == "duffing" else family
-    title = f"{name}, c = 0.3, r = {restitution:g}, {setting}"
-    notes = [] if judged else [f"{title}: times alone, no answer is judged: many digits of it take too long."]
-    return Case(title, methods, truth, kappas, skipped, notes=notes)
+    return Case(f"linear, c = 0.3, r = {restitution:g}, {setting}", methods, truth, kappas, skipped)
 
 
 def _a_phase(states: States) -> list[float]:
     return [float(threshold(states.osc, tau).v) for tau in states.tau.tolist()]
-
-
-def _array_of_phases(states: States) -> Any:
-    return threshold(states.osc, states.tau).v
 
 
 def between(name: str, fly: Any, draw: Draws) -> Method:

@@ -9,18 +9,17 @@ import json
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
+from itertools import count
 from pathlib import Path
 
 import numpy as np
 
 import singimpact as si
 from singimpact.algebra.numbers import Array
-from singimpact.bench.drawn import CHATTERING, Draws, States
+from singimpact.bench.drawn import CHATTERING, CLEARANCES, OMEGAS, Draws, States
 from singimpact.bench.fresh import cost
-from singimpact.bench.groups import branch_rows
-from singimpact.bench.groups.command_rows import RUN, SERIES
-from singimpact.bench.groups.start_rows import AIMS, Script, script
 from singimpact.bench.measuring import Aim, Case, Effort, Method, Row, Timed
+from singimpact.branches.events import PERIOD_DOUBLING
 
 STORED = Path(__file__).parents[1] / "data" / "limits.json"
 ArrayCall = Callable[[Array, Array], object]
@@ -66,19 +65,48 @@ def cases(effort: Effort) -> Iterator[Case]:
 # ---- what a new process costs
 
 
+SCRIPTS = {
+    "linear": (f"si.linear({OMEGAS['linear']}, {CLEARANCES['linear']}, 0.8)", 0.8e6),
+    "Duffing": (
+        f"si.ImpactOscillator('x + 0.1*xdot + 0.3*x**3', 'cos(omega*t)', {CLEARANCES['duffing']}, 0.8,"
+        f" {{'omega': {OMEGAS['duffing']}}})",
+        2.5e6,
+    ),
+    "linear, a law of its own": (
+        f"si.linear({OMEGAS['linear']}, {CLEARANCES['linear']}, '-0.8*v - 0.1*(-v)**1.5')",
+        1.5e6,
+    ),
+}
+"""Models, and microseconds of CPU of the first script in a new cache folder."""
+SCRIPT = """import singimpact as si
+import numpy as np
+osc = {model}
+rng = np.random.default_rng({seed})
+tau, v = rng.uniform(0, 2, {states}), rng.uniform(0.05, 2, {states})
+osc.impact_map(tau, v)
+"""
+COMMANDS = {"verify": 25e6, "verify e:meq e:qdef": 1e6}
+RUN = "subprocess.run([sys.executable, '-m', 'singimpact', *{words!r}], cwd={place!r}, check=True, capture_output=True)"
+SEEDS = count()
+
+
+def script(family: str, states: int) -> str:
+    """A user's first lines: a model and an array of states, which are others each time."""
+    return SCRIPT.format(model=SCRIPTS[family][0], seed=next(SEEDS), states=states)
+
+
 def first_answers(effort: Effort) -> list[Method]:  # noqa: ARG001
     """Scripts and commands, each in a new process and a new cache folder."""
     rows = [
-        Method("singimpact, script", f"{family}, 100000 states", partial(_script, family), aim=Aim(AIMS[family][0]))
-        for family in AIMS
+        Method("singimpact, script", f"{family}, 100000 states", partial(_script, family), aim=Aim(aim))
+        for family, (_, aim) in SCRIPTS.items()
     ]
-    lines = {"verify": 25e6, "verify e:meq e:qdef": 1e6}
-    return rows + [Method("singimpact", line, partial(_command, line), aim=Aim(lines[line])) for line in lines]
+    return rows + [Method("singimpact", line, partial(_command, line), aim=Aim(aim)) for line, aim in COMMANDS.items()]
 
 
 def _script(family: str) -> Timed:
     with tempfile.TemporaryDirectory() as place:
-        return Timed(Script(partial(script, family, 100_000)).in_folder(place).seconds, [None])
+        return Timed(cost(script(family, 100_000), around={"SINGIMPACT_CACHE": place}).seconds, [None])
 
 
 def _command(line: str) -> Timed:
@@ -188,6 +216,9 @@ def _plain(name: str, setting: str, aim: float | None, problems: int, call: Call
 
 # ---- searches
 
+SERIES = {"theory.chatter_limit(8)": 0.4e6, "theory.gamma(8)": 0.1e6}
+BEFORE_SERIES = "import flint, numpy, sympy\nfrom singimpact import theory\n"
+
 
 def searches(effort: Effort) -> list[Method]:
     """Chatter limits, thresholds, exponents, branches, curves, basins, manifolds, series."""
@@ -202,8 +233,8 @@ def searches(effort: Effort) -> list[Method]:
         _plain("threshold", "Duffing, an array, a phase", 1e3, phases, lambda: si.threshold(duffing, pressed)),
         _plain("orbit", "Duffing, an impact", None, impacts, lambda: duffing.orbit(0.3, 0.7, impacts)),
         _plain("lyapunov", "Duffing, an impact", None, impacts, partial(exponents, impacts, transient=0)),
-        _plain("branch", "linear, a point", 500.0, 200, partial(branch_rows.linear_branch, 200)),
-        _plain("event_curve", "bouncing ball, a point", None, 200, branch_rows.doubling_curve),
+        _plain("branch", "linear, a point", 500.0, 200, partial(linear_branch, 200)),
+        _plain("event_curve", "bouncing ball, a point", None, 200, doubling_curve),
         _plain("basins", "linear, a pixel", 4.2, pixels**2, lambda: si.basins(two, size=pixels)),
         _plain("manifold", "linear", None, 1, lambda: si.manifold(saddle, v=1)),
         _plain("homoclinic_points", "linear", None, 1, lambda: si.homoclinic_points(chaotic.periodic(1, 1)[0])),
@@ -211,8 +242,29 @@ def searches(effort: Effort) -> list[Method]:
         _drawn("chatter_limit", "linear", 3.0, chattering(1000), si.linear(2, "0.7", "0.9").chatter_limit),
         _drawn("chatter_limit", "Duffing", 100.0, Draws("duffing", "chattering", limits, 0.8), duffing.chatter_limit),
         _drawn("impact_map", "smoothed one-sided spring", 20.0, _states(20), MODELS["smoothed spring"].impact_map),
-        *(Method("singimpact", row.made[7:], row.timed, aim=Aim(row.seconds * 1e6)) for row in SERIES[3:]),
+        *(Method("singimpact", call, partial(_series, call), aim=Aim(aim)) for call, aim in SERIES.items()),
     ]
+
+
+def linear_branch(points: int) -> None:
+    """A branch of x'' + x'/10 + x = A cos(4t/5) through a graze."""
+    # the graze is at the amplitude -hypot(1 - 0.8^2, 0.08) = -0.3688, between the ends
+    osc = si.linear("0.8", -1, "0.8", damping="0.1", amplitude="-0.4")
+    si.branch(osc.periodic(1, 1)[0], "amplitude", (-0.6, -0.33), step=1.6 / points)
+
+
+def doubling_curve() -> None:
+    """A curve of period doublings of the bouncing ball."""
+    ball = si.ImpactOscillator("1", "G*cos(t)", 0, "0.5", {"G": "1.5"})
+    # doubles at G = hypot(pi (1 - r)/(1 + r), 2 (1 + r^2)/(1 + r)^2), which is 1.527 at r = 1/2
+    orbits = [si.branch(orbit, "G", (1.4, 1.7)) for orbit in ball.periodic(1, 1)]
+    (event,) = (event for family in orbits for event in family.events if event.kind == PERIOD_DOUBLING.name)
+    si.event_curve(event, ("G", "restitution"), ((0.5, 3.5), (0.1, 0.95)), step=0.012)
+
+
+def _series(call: str) -> Timed:
+    """In a new process, with flint, numpy and sympy there."""
+    return Timed(cost(call, BEFORE_SERIES).seconds, [None])
 
 
 # ---- stored ratios

@@ -1,26 +1,37 @@
 """`bench public`: the twelve calls of the page on run times, beside heyoka, scipy and a student's loops of numba.
 
-Cases of other groups under names of one kind, with the loops beside them; and two studies, of which only the time is
-measured: no truth of a picture is known.
+Cases of other groups and of orbits under names of one kind, with the loops beside them; and two studies, of which only
+the time is measured: no truth of a picture is known.
 """
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
+from itertools import chain
 from typing import Any
 
 import numpy as np
 
 import singimpact as si
 from singimpact.algebra.numbers import Array
-from singimpact.bench.drawn import CHATTERING, CLEARANCES, OMEGAS, Draws, States
+from singimpact.bench.drawn import CHATTERING, CLEARANCES, OMEGAS, Draws, States, counted
 from singimpact.bench.groups import chatter_rows
-from singimpact.bench.groups.impact_map_rows import Calls, derivative_case, map_case, sizes_of
-from singimpact.bench.groups.orbit_rows import FIRST, orbit_case
-from singimpact.bench.measuring import NO_AIM, Case, Counted, Effort, Method
-from singimpact.bench.peers import fixed_steps
+from singimpact.bench.groups.impact_map_rows import (
+    ACCURACY,
+    HEYOKA,
+    SCIPY,
+    Calls,
+    derivative_case,
+    map_case,
+    sizes_of,
+    taylor_stepper,
+)
+from singimpact.bench.measuring import NO_AIM, Case, Counted, Effort, Method, with_peers
+from singimpact.bench.peers import fixed_steps, followed_impacts, runge_kutta
+from singimpact.bench.truth import drawn_flights
 
 TWO_BASINS = si.linear("2.8", "0.1", "0.8", amplitude=-1)
+FIRST = (1, 2, 3, 4, 5)  # impacts of each orbit that are judged
 OVER = (-0.1, 0.25)  # clearances of the bifurcation diagram
 
 
@@ -38,12 +49,12 @@ def cases(effort: Effort) -> Iterator[Case]:
         yield _beside(f"impact_map: {name}", case, _flown(family, kind, effort))
     yield _beside("derivative: linear, an array", derivative_case(sizes_of(effort)))
     for name, family in (("linear", "linear"), ("Duffing", "duffing")):
-        yield _beside(f"orbit: {name}, an impact", orbit_case(family, 0.9, effort), _orbits(family))
+        yield _beside(f"orbit: {name}, an impact", _orbit_case(family, effort), _orbits(family))
     # a student ends a chatter as the other peers do, and bisects as they do
     limits = chatter_rows.states_case(CHATTERING, 0.9, 1, effort)
     few = Draws(CHATTERING, "chattering", 5, restitution=0.9)
     yield _beside("chatter_limit: linear, a state", limits, chatter_rows.summed("numba", fixed_steps.fly, few))
-    thresholds = chatter_rows.phases_case("linear", 0.5, 1, effort)
+    thresholds = chatter_rows.phases_case(0.5, effort)
     phase = Draws("linear", "chattering", 1, restitution=0.5)
     yield _beside("threshold: linear, a phase", thresholds, chatter_rows.between("numba", fixed_steps.fly, phase))
     yield Case("basins: linear, a pixel", _basins(effort))
@@ -51,7 +62,7 @@ def cases(effort: Effort) -> Iterator[Case]:
 
 
 def _beside(title: str, case: Case, *loops: Method) -> Case:
-    """A case of another group: the first call of the package, the peers by the names of their programs, the loops."""
+    """A case with loops: the first call of the package, the peers by the names of their programs, the loops."""
     own, *others = case.methods
     # "heyoka, terminal event" is heyoka; further settings of the package have no column
     peers = [
@@ -60,6 +71,38 @@ def _beside(title: str, case: Case, *loops: Method) -> Case:
         if not method.name.startswith("singimpact")
     ]
     return replace(case, name=title, methods=[replace(own, name="singimpact", aim=NO_AIM), *peers, *loops])
+
+
+def _orbit_case(family: str, effort: Effort) -> Case:
+    """Every run has several orbits; impacts are counted that were flown, not the ones that a sum stands for."""
+    starts, impacts = 4 if effort.quick else 10, 1000
+    few = (2, 20) if effort.quick else (10, 100)
+    draw = partial(Draws, family, "generic", restitution=0.9)
+    own = [Method("singimpact, orbit", f"{impacts} impacts a call", partial(_own_orbits, impacts), draw=draw(starts))]
+    methods, skipped = with_peers(
+        own,
+        lambda: [_chained(HEYOKA, taylor_stepper(family), draw(starts), few[1])],
+        lambda: [_chained(SCIPY, runge_kutta.stepper(family, ACCURACY[SCIPY]), draw(few[0] // 2), 10)],
+    )
+    # a flight of Duffing's model takes 80 ms in balls
+    truth, kappas = drawn_flights.impacts(draw(starts)(), starts if family == "linear" else 2, FIRST)
+    return Case(f"{family}, an impact of an orbit", methods, truth, kappas, skipped)
+
+
+def _own_orbits(impacts: int, states: States) -> Counted:
+    orbits = [states.osc.orbit(tau, v, impacts) for tau, v in zip(states.tau.tolist(), states.v.tolist(), strict=True)]
+    # a completed chatter is one entry for infinitely many impacts, and is not counted
+    flown = sum(int(np.count_nonzero(orbit.kind == "impact")) for orbit in orbits)
+    return Counted(flown, list(chain.from_iterable(orbit.tau[list(FIRST)].tolist() for orbit in orbits)))
+
+
+def _chained(name: str, fly: Any, draw: Draws, impacts: int) -> Method:
+    def run(problems: Any) -> Counted:
+        times = [followed_impacts.chain(fly, problem, impacts) for problem in problems]
+        return Counted(impacts * len(times), [each[number - 1] for each in times for number in FIRST])
+
+    setting = f"tolerance {ACCURACY[name]:.0e}, {counted(draw.count, 'state')}, {impacts} impacts"
+    return Method(name, setting, run, draw=lambda: draw().problems())
 
 
 def _numbers(states: States) -> Array:
@@ -100,6 +143,7 @@ def _basins(effort: Effort) -> list[Method]:
 def _diagrams(effort: Effort) -> list[Method]:
     count, few = (20, 5) if effort.quick else (300, 20)
     own = partial(si.bifurcation, TWO_BASINS, "clearance", OVER, points=count)
+    # of 260 impacts at each clearance the first 200 are not drawn, because the orbit settles in them
     models = [fixed_steps.numbers("linear", 2.8, c, -1.0) for c in np.linspace(*OVER, few)]
 
     def run() -> list[Array]:

@@ -243,5 +243,5 @@ def cases(effort: Effort) -> Iterator[Case]:
     """A case a series and order."""
     chosen = [task for task in TASKS if not (effort.quick and task.long)]
     for (name, _), tasks in groupby(chosen, key=lambda task: (task.case, task.order)):
-        methods = [Method(task.method, f"order {task.order}", partial(Task.timed, task), task.order) for task in tasks]
+        methods = [Method(task.method, f"order {task.order}", partial(Task.timed, task)) for task in tasks]
         yield Case(name, methods, TRUTH[name], missed=1.0)  # a cut series is coarse, and no other answer
