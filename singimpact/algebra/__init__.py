@@ -17,7 +17,7 @@ _FILES = {
     "gathering": "Remembered",
     "horner": "Horner",
     "interpolation": "READING interpolated",
-    "jets": "Jet JetSpace blow_up divided implicit inverse_map",
+    "jets": "Jet JetSpace",
     "long_sums": "LongSum Monomials Products order_key primed",
     "numbers": "as_float as_mpf compare constant exact float_array rational_near sign_of",
     "parsing": "DEFINITIONS from_sympy parse",

@@ -26,7 +26,6 @@ _FILES = {
     "figures.outlines": "CHANGES damped",
     "routes.equations": "derived_from equation watched",
     "routes.fold": "eta psi_q s",
-    "routes.fold_series": "fold_series",
     "routes.implicit": "a_symbol phi_c r v_c",
     "routes.scaling": "WEIGHTS Weights e limit_launch",
     "routes.swan": "Dh_bar f_map g_map h_bar m mbar mu_of_m r_of_m",

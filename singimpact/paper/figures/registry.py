@@ -1,71 +1,31 @@
 """Figure numbers and the functions that compute them, found when they are asked for."""
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from singimpact import cache
+from singimpact.handed_on import names_of
 from singimpact.inputs import checked_keywords, refuse
 from singimpact.paper.figures.panel import Dot, Line, Panel, Picture, Region
 from singimpact.scenes.layer_data import key_of
 from singimpact.store import cache_folder
 
+FILES: dict[str, tuple[int | str, ...]] = {
+    "outlines": (1, 2, 9, 10),
+    "contact_figures": (3, 4, 5, 6, 7, 8),
+    "swan_figures": (11, 12, 14, 15),
+    "unfolded_figures": (13, 16, 17),
+    "corrections": ("B1", "B2", "B3"),
+    "beyond_figures": ("B4", "B5", "B6", "B7", "B8", "B9"),
+}
+"""Files of this room, and the figures of each: `figure_3` is in `contact_figures`."""
 FIGURES = tuple(range(1, 18))
 """The numbers of the paper's figures."""
-BEYOND = ("B1", "B2", "B3", "B4", "B5", "B6", "B7", "B8", "B9")
+BEYOND = (*FILES["corrections"], *FILES["beyond_figures"])
 """The names of figures of what the paper does not have."""
 
 
 ACCEPTED = f"a number from {min(FIGURES)} to {max(FIGURES)}, or {BEYOND[0]} to {BEYOND[-1]} for those beyond the paper"
-
-
-def _function(number: int | str) -> Callable[[], Picture]:
-    if isinstance(number, str):
-        return _beyond(number)
-    from singimpact.paper.figures import (  # they load what computes
-        contact_figures,
-        outlines,
-        swan_figures,
-        unfolded_figures,
-    )
-
-    functions: dict[int, Callable[[], Picture]] = {
-        1: outlines.figure_1,
-        2: outlines.figure_2,
-        3: contact_figures.figure_3,
-        4: contact_figures.figure_4,
-        5: contact_figures.figure_5,
-        6: contact_figures.figure_6,
-        7: contact_figures.figure_7,
-        8: contact_figures.figure_8,
-        9: outlines.figure_9,
-        10: outlines.figure_10,
-        11: swan_figures.figure_11,
-        12: swan_figures.figure_12,
-        13: unfolded_figures.figure_13,
-        14: swan_figures.figure_14,
-        15: swan_figures.figure_15,
-        16: unfolded_figures.figure_16,
-        17: unfolded_figures.figure_17,
-    }
-    return functions[number]
-
-
-def _beyond(name: str) -> Callable[[], Picture]:
-    from singimpact.paper.figures import beyond_figures, corrections
-
-    functions: dict[str, Callable[[], Picture]] = {
-        "B1": corrections.figure_B1,
-        "B2": corrections.figure_B2,
-        "B3": corrections.figure_B3,
-        "B4": beyond_figures.figure_B4,
-        "B5": beyond_figures.figure_B5,
-        "B6": beyond_figures.figure_B6,
-        "B7": beyond_figures.figure_B7,
-        "B8": beyond_figures.figure_B8,
-        "B9": beyond_figures.figure_B9,
-    }
-    return functions[name]
 
 
 def picture(number: Any) -> Picture:
@@ -78,7 +38,10 @@ def picture(number: Any) -> Picture:
     number = {str(key): key for key in FIGURES}.get(number, number) if isinstance(number, str) else number
     if isinstance(number, bool) or not isinstance(number, int | str) or number not in (*FIGURES, *BEYOND):
         raise refuse("figure", number, ACCEPTED)
-    return _function(number)()
+    file = next(file for file, numbers in FILES.items() if number in numbers)
+    # loaded here, because the file loads what computes
+    data: Picture = names_of(__package__, {file: f"figure_{number}"})(f"figure_{number}")()
+    return data
 
 
 @checked_keywords

@@ -3,10 +3,11 @@
 from fractions import Fraction
 
 import pytest
+from fold_route import blow_up, divided, implicit, inverse_map
 from hypothesis import given, settings, strategies as st
 from sympy_ring import SympyExact
 
-from singimpact.algebra import DOUBLES, EXACT, JetSpace, SymbolRing, blow_up, divided, implicit, inverse_map
+from singimpact.algebra import DOUBLES, EXACT, JetSpace, SymbolRing
 
 ENGINES = [EXACT, SympyExact()]
 rationals = st.fractions(-3, 3, max_denominator=7)

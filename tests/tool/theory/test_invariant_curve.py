@@ -5,11 +5,11 @@ from fractions import Fraction
 import mpmath
 import pytest
 import sympy
+from fold_route import fold_series
 from sympy_ring import SympyExact
 
 from singimpact.algebra import DOUBLES, EXACT, Balls, Multiprecision, precision_of
 from singimpact.contact import Contact
-from singimpact.paper import fold_series
 from singimpact.theory import P, invariant_curve, lambda_, multiplier_across, restitution_of, sheet, symbolic_curve
 
 LAMBDA = Fraction(3, 5)

@@ -4,107 +4,31 @@ Not here: claims of the paper (`claims.sections`). None is printed anywhere, so 
 """
 
 from collections.abc import Callable
+from functools import partial
 
+from singimpact.handed_on import names_of
 from singimpact.paper.claims.claim import Claim
 
 
-def _cascade() -> tuple[Claim, ...]:
-    from singimpact.paper.claims.beyond import cascade as section
-
-    return section.CLAIMS
-
-
-def _horseshoe() -> tuple[Claim, ...]:
-    from singimpact.paper.claims.beyond import horseshoe as section
-
-    return section.CLAIMS
+def _claims(file: str) -> tuple[Claim, ...]:
+    claims: tuple[Claim, ...] = names_of(__name__, {file: "CLAIMS"})("CLAIMS")
+    return claims
 
 
-def _repairs() -> tuple[Claim, ...]:
-    from singimpact.paper.claims.beyond import repairs as section
-
-    return section.CLAIMS
-
-
-def _every_order() -> tuple[Claim, ...]:
-    from singimpact.paper.claims.beyond import every_order as section
-
-    return section.CLAIMS
-
-
-def _gauge() -> tuple[Claim, ...]:
-    from singimpact.paper.claims.beyond import gauge as section
-
-    return section.CLAIMS
-
-
-def _first_order() -> tuple[Claim, ...]:
-    from singimpact.paper.claims.beyond import first_order as section
-
-    return section.CLAIMS
-
-
-def _holder() -> tuple[Claim, ...]:
-    from singimpact.paper.claims.beyond import holder as section
-
-    return section.CLAIMS
-
-
-def _loops() -> tuple[Claim, ...]:
-    from singimpact.paper.claims.beyond import loops as section
-
-    return section.CLAIMS
-
-
-def _foot() -> tuple[Claim, ...]:
-    from singimpact.paper.claims.beyond import foot as section
-
-    return section.CLAIMS
-
-
-def _onset() -> tuple[Claim, ...]:
-    from singimpact.paper.claims.beyond import onset as section
-
-    return section.CLAIMS
-
-
-def _events() -> tuple[Claim, ...]:
-    from singimpact.paper.claims.beyond import events as section
-
-    return section.CLAIMS
-
-
-def _events_harmonic() -> tuple[Claim, ...]:
-    from singimpact.paper.claims.beyond import events_harmonic as section
-
-    return section.CLAIMS
-
-
-def _gamma() -> tuple[Claim, ...]:
-    from singimpact.paper.claims.beyond import gamma as section
-
-    return section.CLAIMS
-
-
-def _hertz() -> tuple[Claim, ...]:
-    from singimpact.paper.claims.beyond import hertz as section
-
-    return section.CLAIMS
-
-
-BEYOND: dict[str, Callable[[], tuple[Claim, ...]]] = {
-    "cascade": _cascade,
-    "horseshoe": _horseshoe,
-    "repairs": _repairs,
-    "every_order": _every_order,
-    "gauge": _gauge,
-    "first_order": _first_order,
-    "holder": _holder,
-    "foot": _foot,
-    "loops": _loops,
-    "onset": _onset,
-    "events": _events,
-    "events_harmonic": _events_harmonic,
-    "gamma": _gamma,
-    "hertz": _hertz,
-}
+FILES = (
+    "cascade",
+    "horseshoe",
+    "repairs",
+    "every_order",
+    "gauge",
+    "first_order",
+    "holder",
+    "foot",
+    "loops",
+    "onset",
+    "events",
+    "events_harmonic",
+    "gamma",
+    "hertz",
+)
+BEYOND: dict[str, Callable[[], tuple[Claim, ...]]] = {file: partial(_claims, file) for file in FILES}
