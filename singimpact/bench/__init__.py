@@ -17,7 +17,7 @@ _FILES = {
     ),
     "page": "ABOUT COMMAND READING STRESS_ABOUT STRESS_COMMAND digest_of recorded stress_page timed_digest",
     "peers.fixed_steps": "flights numbers orbit",
-    "problems": "Problem states values",
+    "problems": "Problem values",
     "report": "in_words plotted reached table",
     "selftest.basin_pixels": "Follower row",
     "selftest.batches": "grazes lanes",

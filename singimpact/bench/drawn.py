@@ -71,7 +71,7 @@ class States:
     def problem(self, tau: float, v: float) -> Problem:
         """A state of this model as a peer takes it."""
         omega, clearance = OMEGAS[self.family], CLEARANCES[self.family]
-        return Problem(self.family, "drawn", omega, clearance, self.restitution, tau, v, "", "")
+        return Problem(self.family, omega, clearance, self.restitution, tau, v)
 
 
 def _generic(rng: Any, family: str, restitution: float, count: int) -> tuple[Array, Array]:  # noqa: ARG001

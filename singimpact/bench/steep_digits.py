@@ -17,7 +17,7 @@ from singimpact.cases import sweep
 from singimpact.status import Status
 
 FEWER, MORE = 20, 40
-BOTH, ONE, NEITHER = 2, 1, 0
+BOTH = 2  # of the two numbers of digits, where both enclose
 COLUMNS = ("status", "enclosed", "apart", "time", "seconds", "more_seconds")
 
 

@@ -8,13 +8,14 @@ from concurrent.futures import ThreadPoolExecutor
 import flint
 import numpy as np
 import pytest
+from reference_states import Reference, states as problems
 
-from singimpact.bench import Cubic, Linear, Problem, first_hit, random_states, states as problems
+from singimpact.bench import Cubic, Linear, first_hit, random_states
 
 
 @pytest.mark.parametrize(("family", "made", "each"), [("linear", Linear, 50), ("duffing", Cubic, 70)])
 def test_truth_gives_the_reference(family: str, made: type, each: int) -> None:
-    def off(problem: Problem) -> float:
+    def off(problem: Reference) -> float:
         found = first_hit(made(problem.omega, problem.clearance, problem.tau, problem.v), problem.v, 2000.0)
         assert found is not None
         return float(abs(found[0] / flint.arb(problem.flight_time) - 1))

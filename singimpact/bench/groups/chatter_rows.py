@@ -34,7 +34,7 @@ def cases(effort: Effort) -> Iterator[Case]:
 
 
 def _case(r: str, effort: Effort) -> Case:
-    osc, problem = linear(2, "0.3", r), Problem("linear", "chatter", 2.0, 0.3, float(r), 1.2, 0.01, "", "")
+    osc, problem = linear(2, "0.3", r), Problem("linear", 2.0, 0.3, float(r), 1.2, 0.01)
     stops = STOPS[:2] if effort.quick else STOPS
     own = [Method("singimpact", "doubles", lambda: [osc.chatter_limit(*STATE).tau])]
     own += [

@@ -5,7 +5,7 @@ judged by its value: v_c at the end of a flight from (-0.2, 0.01) that was flown
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import groupby
 
@@ -78,7 +78,7 @@ class Task:
     Attributes
     ----------
     case, method, order : as the table shows them. made : the statement that is timed. before, judged : around it.
-    limit : CPU seconds that it may take; None for a peer, shown for comparison. long : not with `quick`.
+    limit : CPU seconds that it may take; None where it is shown for comparison.
     """
 
     case: str
@@ -88,7 +88,6 @@ class Task:
     before: str = OURS
     judged: str = "answer = None"
     limit: float | None = None
-    long: bool = False
 
     def cost(self) -> Cost:
         """CPU seconds, megabytes, and the value as text in a list."""
@@ -104,112 +103,72 @@ SYMBOLS, MODEL, GAMMA = "v_c, symbols for the jets", "v_c, cubic model", "gamma,
 TRUTH = {SYMBOLS: ["0.01"], MODEL: ["0.01"], GAMMA: [ON_GAMMA]}
 
 
-def _symbols(order: int, limit: float | None = None, long: bool = False) -> Task:
+def _symbols(order: int) -> Task:
     made = f"sheet(Contact.generic(1, {order}), {order})"
-    return Task(SYMBOLS, "kernel", order, made, OURS, f"made = made.v.to_sympy()\n{JETS}", limit, long)
+    return Task(SYMBOLS, "kernel", order, made, OURS, f"made = made.v.to_sympy()\n{JETS}")
 
 
-def _model(order: int, limit: float | None = None, long: bool = False) -> Task:
+def _model(order: int) -> Task:
     made = f"sheet(Contact.of(DUFFING, Fraction(0), 1, {order}, EXACT), {order}).v"
-    return Task(MODEL, "kernel", order, made, OURS, OF_JET, limit, long)
+    return Task(MODEL, "kernel", order, made, OURS, OF_JET)
 
 
-def _public(case: str, order: int, long: bool = False) -> Task:
+def _public(case: str, order: int) -> Task:
     """The function that a user calls, with the sympy object that it returns."""
     made, judged = {
         SYMBOLS: (f"theory.v_c({order}, at='tangency')", JETS),
         MODEL: (f"theory.v_c({order}, 'tangency', CUBIC, 0)", OF_SUM),
         GAMMA: (f"theory.gamma({order}, 'tangency', CUBIC, 0)", OF_POWERS),
     }[case]
-    return Task(case, "singimpact", order, made, PUBLIC, judged, None, long)
+    return Task(case, "singimpact", order, made, PUBLIC, judged)
 
 
-def _curve(order: int, ring: str, limit: float | None = None, long: bool = False) -> Task:
+def _curve(order: int, ring: str) -> Task:
     name, start, rate, coefficient = {
         "EXACT": ("kernel, exact", "Fraction(0)", "Fraction(3, 5)", "c"),
         "Balls(256)": ("kernel, 256-bit balls", "Fraction(0)", "Fraction(3, 5)", "as_rational(c)"),
         "DOUBLES": ("kernel, doubles", "0.0", "0.6", "Fraction(c)"),
     }[ring]
     made = f"invariant_curve(Contact.of(DUFFING, {start}, 1, {order}, {ring}), {rate}, {order})"
-    return Task(GAMMA, name, order, made, OURS, OF_GRAPH.format(coefficient), limit, long)
+    return Task(GAMMA, name, order, made, OURS, OF_GRAPH.format(coefficient))
 
 
-def _implicit(order: int, long: bool = False) -> Task:
+def _implicit(order: int) -> Task:
     made = f"implicit.at_contact(implicit.v_c({order}), 1)"
-    return Task(SYMBOLS, "sympy, implicit function", order, made, SYMPY, JETS, None, long)
+    return Task(SYMBOLS, "sympy, implicit function", order, made, SYMPY, JETS)
 
 
-def _plain(case: str, order: int, long: bool = False) -> Task:
+def _plain(case: str, order: int) -> Task:
     given = f"*symbols({order})" if case == SYMBOLS else "FORCE, FORCING, CLEARANCE"
     made, judged = f"plain.velocities({given}, {order})[0]", JETS if case == SYMBOLS else OF_EXPRESSION
     if case == GAMMA:
         made = f"plain.gamma({given}, Rational(3, 5), {order})"
         judged = OF_EXPRESSION.replace("SIGMA", "Rational(-1, 10)")
-    return Task(case, "sympy, integrals and series", order, made, SYMPY, judged, None, long)
+    return Task(case, "sympy, integrals and series", order, made, SYMPY, judged)
 
 
 # as the table shows them: by case, then by order, the method that the others are compared with first
 TASKS = (
-    _symbols(2),
-    _public(SYMBOLS, 2),
-    _plain(SYMBOLS, 2),
-    _implicit(2),
-    _symbols(3, long=True),
-    _plain(SYMBOLS, 3, True),
-    _implicit(3, True),
-    _symbols(4, long=True),
-    _public(SYMBOLS, 4, True),
-    _plain(SYMBOLS, 4, True),
-    _implicit(4, True),
-    _symbols(6, long=True),
-    _implicit(6, True),
-    _symbols(8),
-    _public(SYMBOLS, 8),
-    _symbols(10, long=True),
-    _symbols(12, long=True),
-    _public(SYMBOLS, 12, True),
-    _symbols(14, 1.0, True),
-    _model(2, long=True),
-    _plain(MODEL, 2, True),
-    _model(3, long=True),
-    _plain(MODEL, 3, True),
-    _model(4, long=True),
-    _public(MODEL, 4, True),
-    _plain(MODEL, 4, True),
-    _model(5, long=True),
-    _plain(MODEL, 5, True),
-    _model(8, long=True),
-    _model(12, 0.05),
-    _public(MODEL, 12),
-    _model(16, long=True),
-    _model(20, long=True),
-    _curve(3, "EXACT"),
-    _curve(3, "DOUBLES", long=True),
-    _plain(GAMMA, 3),
-    _curve(4, "EXACT", long=True),
-    _curve(4, "DOUBLES", long=True),
-    _public(GAMMA, 4, True),
-    _plain(GAMMA, 4, True),
-    _curve(5, "EXACT", long=True),
-    _curve(5, "DOUBLES", long=True),
-    _plain(GAMMA, 5, True),
-    _curve(8, "EXACT", long=True),
-    _curve(8, "Balls(256)", long=True),
-    _curve(8, "DOUBLES", long=True),
-    _curve(16, "EXACT"),
-    _public(GAMMA, 16),
-    _curve(16, "Balls(256)", long=True),
-    _curve(16, "DOUBLES"),
-    _curve(32, "EXACT", 1.0, True),
-    _curve(32, "Balls(256)", long=True),
-    _curve(32, "DOUBLES", long=True),
-    _curve(64, "Balls(256)", 0.5, True),
-    _curve(20, "DOUBLES", 0.01, True),
+    *(task for n in (2, 3, 4) for task in (_symbols(n), _public(SYMBOLS, n), _plain(SYMBOLS, n), _implicit(n))),
+    *(task for n in (8, 12) for task in (_symbols(n), _public(SYMBOLS, n))),
+    *(task for n in (2, 3, 4, 5) for task in (_model(n), _public(MODEL, n), _plain(MODEL, n))),
+    *(task for n in (8, 16) for task in (_model(n), _public(MODEL, n))),
+    *(task for n in (3, 4, 5) for task in (_curve(n, "EXACT"), _public(GAMMA, n), _plain(GAMMA, n))),
+    *(
+        task
+        for n in (8, 16, 32)
+        for task in (_curve(n, "EXACT"), _public(GAMMA, n), _curve(n, "Balls(256)"), _curve(n, "DOUBLES"))
+    ),
 )
+QUICK = (2, 8)  # orders of a quick look
 
 # what may not grow slower unseen, and has no value at a point to be judged by
 LIMITED = (
-    *(task for task in TASKS if task.limit is not None),
+    replace(_symbols(14), limit=1.0),
+    replace(_model(12), limit=0.05),
+    replace(_curve(32, "EXACT"), limit=1.0),
+    replace(_curve(64, "Balls(256)"), limit=0.5),
+    replace(_curve(20, "DOUBLES"), limit=0.01),
     Task("v_c, generic jets", "kernel", 8, "sheet(Contact.generic(0, 8), 8).xdot", limit=0.05),
     Task("v_c, generic jets", "kernel", 12, "sheet(Contact.generic(0, 12), 12).xdot", limit=0.5),
     Task(
@@ -241,7 +200,7 @@ LIMITED = (
 
 def cases(effort: Effort) -> Iterator[Case]:
     """A case a series and order."""
-    chosen = [task for task in TASKS if not (effort.quick and task.long)]
+    chosen = [task for task in TASKS if task.order in QUICK or not effort.quick]
     for (name, _), tasks in groupby(chosen, key=lambda task: (task.case, task.order)):
         methods = [Method(task.method, f"order {task.order}", partial(Task.timed, task)) for task in tasks]
         yield Case(name, methods, TRUTH[name], missed=1.0)  # a cut series is coarse, and no other answer

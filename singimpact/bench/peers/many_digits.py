@@ -1,4 +1,4 @@
-"""mpmath at the working precision: `findroot` on the closed form, `odefun` and a scan, `findroot` on a polynomial."""
+"""mpmath at the working precision: `findroot` on the closed form of a flight."""
 
 from typing import Any
 
@@ -57,33 +57,3 @@ def _scanned(lifted: Any) -> tuple[Any, Any]:
             return s - SCAN + mpmath.eps, s
         s += SCAN
     raise ValueError("no change of sign")
-
-
-def root_of_odefun(problem: Problem, family: str) -> Any:
-    """Time of the first hit by `odefun`, a scan and `findroot`; nan if none within ten units of time."""
-    import mpmath
-
-    omega, c, v = (mpmath.mpf(value) for value in (problem.omega, problem.clearance, problem.v))
-    tenth, cubic = (mpmath.mpf(0), mpmath.mpf(0)) if family == "linear" else (mpmath.mpf("0.1"), mpmath.mpf("0.3"))
-
-    def field(t: Any, y: Any) -> list[Any]:
-        return [y[1], mpmath.cos(omega * t) - y[0] - tenth * y[1] - cubic * y[0] ** 3]
-
-    start = mpmath.mpf(problem.tau)
-    flow, s = mpmath.odefun(field, start, [c, v]), mpmath.mpf(SCAN)
-    while s < 10:
-        if flow(start + s)[0] < c:
-            return mpmath.findroot(lambda t: flow(start + t)[0] - c, (s - SCAN, s), solver="illinois")
-        s += SCAN
-    return mpmath.nan
-
-
-def fixed_points(r: Any) -> tuple[Any, Any, Any]:
-    """1 - lambda, m3 and mu at a tangency: `findroot` on the cubic that the paper prints, from 1."""
-    import mpmath
-
-    rate = mpmath.mpf(r)
-    half = mpmath.mpf(1) / 2
-    m3 = mpmath.findroot(lambda m: (m - half) ** 2 * (m + 3 * half) - 2 * rate * m, 1 + rate / 2)
-    lambda_ = m3 - half
-    return 1 - lambda_, m3, ((lambda_ + 2) / (2 * lambda_ + 1)) ** 2 / lambda_

@@ -6,7 +6,6 @@ from typing import Any
 from singimpact.bench.peers.followed_impacts import derivative_of_map
 from singimpact.bench.problems import Problem
 
-TOLERANCES = (1e-6, 1e-9, 1e-12)
 LONGEST = 1000.0  # time after which a flight is given up
 
 

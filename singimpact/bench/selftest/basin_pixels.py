@@ -236,10 +236,7 @@ def row(flown: Flown) -> Row:
     tau, v = (axis.ravel() for axis in np.meshgrid(answer.tau, answer.v))
     places = np.unique(np.linspace(0, tau.size - 1, PIXELS.followed).astype(int))
     first = answer.first_chatter_completes.ravel()
-    for done, at in enumerate(places.tolist()):
-        if tally.late:
-            tally.leave("CPU time used up", places.size - done)
-            break
+    for at in tally.in_time(places.tolist()):
         state = float(tau[at]), float(v[at])
         answered = answer.attractors[answer.codes.ravel()[at]]
         _pixel(follower, state, answered, bool(first[at]), tally)

@@ -99,10 +99,7 @@ def grazes(flown: Flown, plain: PlainOrbits) -> Row:
     ends = flown.osc.iterate(np.resize(tau, max(tau.size, 2 * 64)), np.resize(v, max(tau.size, 2 * 64)), 1)
     step = flown.osc.impact_map(tau, v)
     tally.restart()
-    for at in range(tau.size):
-        if tally.late:
-            tally.leave("CPU time used up", tau.size - at)
-            break
+    for at in tally.in_time(range(tau.size)):
         _graze(plain, (float(tau[at]), float(v[at])), (step, ends), at, tally)
     return tally.row()
 

@@ -171,10 +171,7 @@ def limits(flown: Flown, plain: PlainOrbits) -> Row:
     pressed = plain.pushes(flown.tau) < 0
     slow = (flown.v < ORBITS.slow * flown.scales.fast) & (flown.step.status == Status.hit)
     places = np.flatnonzero(pressed & slow)[: ORBITS.limits].tolist()
-    for done, at in enumerate(places):
-        if tally.late:
-            tally.leave("CPU time used up", len(places) - done)
-            break
+    for at in tally.in_time(places):
         _limit(flown, plain, at, tally)
     return tally.row() if places else Row(LIMIT_NAME, note="does not apply: no slow state that was drawn is pressed")
 

@@ -128,11 +128,8 @@ def derivatives(flown: Flown, plain: PlainOrbits) -> Row:
         return Row(DERIVATIVE, note="no flight that was drawn returns")
     matrices = flown.osc.derivative(flown.tau[places], flown.v[places], horizon=flown.scales.horizon).matrix
     tally.restart()
-    for done, at in enumerate(places.tolist()):
-        if tally.late:
-            tally.leave("CPU time used up", places.size - done)
-            break
-        _matrix(flown, plain, at, matrices[done], tally)
+    for index in tally.in_time(range(places.size)):
+        _matrix(flown, plain, int(places[index]), matrices[index], tally)
     return tally.row()
 
 

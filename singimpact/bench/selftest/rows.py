@@ -1,6 +1,6 @@
 """The table of a self-test: a row for each comparison, with the states that disagree as they are typed."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, field
 from math import isnan
 from time import process_time
@@ -106,6 +106,14 @@ class Tally:
         """Count states as undecided."""
         if count:
             self.causes[cause] = self.causes.get(cause, 0) + count
+
+    def in_time(self, places: Sequence[int]) -> Iterator[int]:
+        """Places one after the other until the CPU time is used up; those that are left are undecided."""
+        for done, place in enumerate(places):
+            if self.late:
+                self.leave("CPU time used up", len(places) - done)
+                return
+            yield place
 
     def row(self) -> Row:
         """The row."""

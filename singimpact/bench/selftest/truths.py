@@ -52,10 +52,7 @@ def fixed_steps(flown: Flown) -> Row:
         motion = plain_steps.motion(flown.osc, flown.scales.rate)
     except TypeError as reason:
         return Row(tally.compared, note=f"does not apply: {reason}")
-    for at in range(flown.tau.size):
-        if tally.late:
-            tally.leave("CPU time used up", flown.tau.size - at)
-            break
+    for at in tally.in_time(range(flown.tau.size)):
         _one(flown, at, motion, tally)
     return tally.row()
 
@@ -123,11 +120,7 @@ def _some(flown: Flown, count: int) -> list[int]:
 def balls(flown: Flown) -> Row:
     """Flights enclosed in balls: the error is within `time_error` and `velocity_error`."""
     tally = Tally("within .error of balls")
-    places = _some(flown, TRUTHS.balls)
-    for done, at in enumerate(places):
-        if tally.late:
-            tally.leave("CPU time used up", len(places) - done)
-            break
+    for at in tally.in_time(_some(flown, TRUTHS.balls)):
         try:
             ball = enclosed_flight.first_hit(flown.osc, float(flown.tau[at]), float(flown.v[at]), flown.scales.horizon)
         except (Refused, ArithmeticError, TypeError):
@@ -140,11 +133,7 @@ def balls(flown: Flown) -> Row:
 def digits(flown: Flown) -> Row:
     """Flights with `digits=20`: the flights in doubles are within their `time_error` and `velocity_error`."""
     tally = Tally(f"within .error of digits={TRUTHS.wanted}")
-    places = _some(flown, TRUTHS.digits)
-    for done, at in enumerate(places):
-        if tally.late:
-            tally.leave("CPU time used up", len(places) - done)
-            break
+    for at in tally.in_time(_some(flown, TRUTHS.digits)):
         hit = flown.osc.first_hit(
             float(flown.tau[at]), float(flown.v[at]), digits=TRUTHS.wanted, horizon=flown.scales.horizon
         )

@@ -8,15 +8,15 @@ import sys
 
 import numpy as np
 import pytest
+from reference_states import states
 
-from singimpact.bench import states
 from singimpact.flights import iterate, orbit_segment
 from singimpact.flights.impact_map import impact_map
 from singimpact.impact_oscillator import ImpactOscillator, linear
 
 UNCOMPILED = """
 import numpy as np
-from singimpact.bench.problems import states
+from reference_states import states
 for family in ("linear", "duffing"):
     for p in states(family)[::{step}]:
         step = p.model().impact_map(p.tau, p.v)
@@ -57,7 +57,7 @@ def test_inverse_undoes_the_map() -> None:
 
 def test_the_source_runs_without_the_compiler(clone) -> None:
     step = 97
-    environment = {**os.environ, "NUMBA_DISABLE_JIT": "1"}
+    environment = {**os.environ, "NUMBA_DISABLE_JIT": "1", "PYTHONPATH": f"{clone}{os.pathsep}{clone / 'tests'}"}
     command = [sys.executable, "-c", UNCOMPILED.format(step=step)]
     told = subprocess.run(command, cwd=clone, env=environment, capture_output=True, text=True, check=True).stdout
     chosen = [p for family in ("linear", "duffing") for p in states(family)[::step]]

@@ -5,14 +5,14 @@ from __future__ import annotations
 import mpmath
 import numpy as np
 import pytest
+from reference_states import Reference, states
 
-from singimpact.bench import Problem, states
 from singimpact.status import Status
 
 EPSILON = 2.0**-52
 
 
-def errors(problem: Problem) -> tuple[int, float, float]:
+def errors(problem: Reference) -> tuple[int, float, float]:
     """The status, and the errors of flight time and v' in units of what their conditions allow."""
     model = problem.model()
     step = model.impact_map(problem.tau, problem.v)

@@ -7,10 +7,11 @@ from fractions import Fraction
 import mpmath
 import numpy as np
 import pytest
+from reference_states import states
 from scipy.integrate import solve_ivp
 
 from singimpact.algebra import Balls, balls_at, constant, exact
-from singimpact.bench import SMOOTH, STEEP, drawn_of, states
+from singimpact.bench import SMOOTH, STEEP, drawn_of
 from singimpact.flights import Launch, NoHit, Refused, certified_hit
 from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.oscillator import Oscillator
