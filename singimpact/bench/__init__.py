@@ -6,10 +6,10 @@ Not here: what is measured (`flights`, `surface`, `dynamics`), claims of the pap
 from singimpact.handed_on import names_of
 
 _FILES = {
-    "drawn": "Draws Fed KINDS RESTITUTIONS",
+    "drawn": "Draws KINDS RESTITUTIONS",
     "fresh": "cost",
     "groups": "GROUPS measured usual",
-    "groups.impact_map_rows": "CALLS FED sizes_of taylor_stepper",
+    "groups.impact_map_rows": "sizes_of taylor_stepper",
     "groups.limit_rows": "BEFORE_SERIES SCRIPTS SERIES reference script",
     "groups.series_rows": "LIMITED",
     "measuring": (

@@ -108,7 +108,6 @@ KINDS: dict[str, Callable[[Any, str, float, int], tuple[Array, Array]]] = {
         (1 - restitution) * rng.uniform(0.01, 0.05, count),
     ),
 }
-BEGUN = 10  # impacts that have been flown from random states before an iterated map is timed
 
 
 @dataclass
@@ -138,34 +137,6 @@ class Draws:
 
 LARGEST = 100_000
 """States that are drawn, so that a method of fewer states has the first ones of the others."""
-
-
-@lru_cache(maxsize=4)
-def _orbits(family: str, restitution: float, impacts: int) -> States:
-    """Random states after so many calls of the map; where an orbit has ended another state begins."""
-    if not impacts:
-        return Draws(family, "generic", LARGEST, restitution)()
-    before = _orbits(family, restitution, impacts - 1)
-    step = before.osc.impact_map(before.tau, before.v)
-    going = np.isfinite(step.tau) & (step.v > 0)
-    tau, v = np.where(going, step.tau, before.tau[::-1]), np.where(going, step.v, before.v[::-1])
-    return States(family, restitution, tau, v)
-
-
-@dataclass
-class Fed:
-    """The states of one timed call after the other, each what the map makes of those before."""
-
-    family: str
-    count: int
-    restitution: float = 0.9
-    turn: int = field(default=0, init=False)
-
-    def __call__(self) -> States:
-        """The next ones."""
-        found = _orbits(self.family, self.restitution, BEGUN + self.turn)
-        self.turn += 1
-        return States(self.family, self.restitution, found.tau[: self.count], found.v[: self.count])
 
 
 def compile_entries(osc: ImpactOscillator) -> None:

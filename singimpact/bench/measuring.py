@@ -89,22 +89,19 @@ class Aim:
 
     Parameters
     ----------
-    microseconds : of a problem, at most. times : the time of the first method of the case, at least.
+    microseconds : of a problem, at most.
     """
 
     microseconds: float | None = None
-    times: float | None = None
 
-    def reached(self, microseconds: float, ratio: float, wrong: int | None) -> bool | None:
+    def reached(self, microseconds: float, wrong: int | None) -> bool | None:
         """Whether a measured time is within the aim, with no answer wrong; None where there is no aim.
 
         Examples
         --------
-        >>> Aim(6.0).reached(5.0, 1.0, 0), Aim(6.0).reached(5.0, 1.0, 2), Aim(times=4.0).reached(9.0, 3.9, None)
-        (True, False, False)
+        >>> Aim(6.0).reached(5.0, 0), Aim(6.0).reached(5.0, 2)
+        (True, False)
         """
-        if self.times is not None:  # of a peer: its wrong answers do not count against the first method
-            return ratio >= self.times
         return None if self.microseconds is None else microseconds <= self.microseconds and not wrong
 
 
@@ -317,7 +314,7 @@ def _row(group: str, case: Case, method: Method, turn: _Turn, timings: tuple[Any
         (low, high),
         rounds,
         method.aim,
-        method.aim.reached(microseconds, middle, wrong),
+        method.aim.reached(microseconds, wrong),
     )
 
 

@@ -26,8 +26,8 @@ are compared with ball arithmetic that shares no code with them, chatter limits 
 singimpact itself. Timed calls have other states each time; a peer that is too slow for all has the first ones. Programs
 run in turn on one machine: ratios carry over, times do not. [All numbers](benchmarks.csv), with settings and quartiles.
 
-This page is written by `{COMMAND}`; `singimpact bench GROUP` measures more: other numbers of states a call, chatter in
-many digits, series, new processes."""
+This page is written by `{COMMAND}`; `singimpact bench GROUP` measures more: chatter as close as wanted, series, new
+processes."""
 PEERS = ("heyoka", "scipy", "numba")
 COLUMNS = ("case", "method", "setting", "microseconds", "ratio", "error", "wrong", "missed", "of")
 STRESS_COMMAND = "singimpact stress --format page -o docs/stress.md"

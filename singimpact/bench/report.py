@@ -15,7 +15,7 @@ NOTE = (
     " times condition times epsilon, or no answer; missed: of these, off by more than 1 %."
 )
 AIMED = (
-    "To reach: a time at most, with no answer wrong, or times the first row at least; reached or missed as measured"
+    "To reach: a time at most, with no answer wrong; reached or missed as measured"
     " here, on this machine and under its load."
 )
 
@@ -58,8 +58,7 @@ def _aim(row: Row) -> str:
     """The figure to reach, and whether it is reached."""
     if row.reached is None:
         return ""
-    figure = f"{row.aim.times:g} times" if row.aim.times is not None else in_words(row.aim.microseconds or 0)
-    return f"{figure}: {'reached' if row.reached else 'missed'}"
+    return f"{in_words(row.aim.microseconds or 0)}: {'reached' if row.reached else 'missed'}"
 
 
 def reached(found: Measured) -> str:

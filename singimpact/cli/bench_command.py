@@ -252,8 +252,9 @@ def command(
     as_json: bool,
     output: str | None,
 ) -> None:
-    """Measure CPU times and compare them with other tools. The groups are public, map, chatter, series,
-    limit. The default is all but public, which has twelve calls beside loops of numba (with --quick without limit).
+    """Measure CPU times and compare them with other tools. The groups are public, chatter, series, limit.
+
+    The default is all but public, which has twelve calls beside loops of numba (with --quick without limit).
 
     The group `limit` compares public calls with a reference computation of the same run; the exit code is 1 if a ratio
     is more than half above its stored one.

@@ -13,9 +13,7 @@ from click.testing import CliRunner
 
 from singimpact.bench import (
     ABOUT,
-    CALLS,
     COMMAND,
-    FED,
     FULL,
     GROUPS,
     KINDS,
@@ -24,13 +22,11 @@ from singimpact.bench import (
     RESTITUTIONS,
     Draws,
     Effort,
-    Fed,
     flights,
     in_words,
     measured,
     numbers,
     orbit,
-    sizes_of,
     taylor_stepper,
     timed_digest,
     usual,
@@ -43,7 +39,6 @@ COSTLY = ("public", "series")
 EVENTS = {"scipy DOP853, terminal event", "heyoka, terminal event"}
 PEERS = {
     "public": {"heyoka", "scipy", "numba"},
-    "map": EVENTS,
     "chatter": {"scipy DOP853, 1e-9", "heyoka, 1e-9", "mpmath findroot, dps 30", *EVENTS},
     "series": {"sympy, integrals and series", "sympy, implicit function"},
     "limit": {"reference"},  # a command of .ci/check measures it
@@ -66,31 +61,10 @@ def test_group_at_its_smallest_size(name):
     assert not found.skipped
 
 
-def test_map_shows_every_way_to_call_it():
-    """One state, ten, a hundred, a thousand and arrays, each with its aim and both peers in the same case."""
-    calls = {(each.family, each.kind, each.states) for each in CALLS}
-    assert {("linear", "generic", n) for n in (1, 10, 100, 1000, 0)} <= calls
-    assert {("linear", kind, 0) for kind in ("v from 1e-8 to 1e-2", "tau within 1e6", FED)} <= calls
-    assert {("duffing", "generic", 1), ("duffing", "generic", 0)} <= calls
-    assert sizes_of(FULL).many == 100_000
-
-
-def test_aims_are_judged_by_what_was_measured():
-    pytest.importorskip("heyoka")
-    rows = measured("map", SMALL).rows
-    ours = [row for row in rows if row.method == "singimpact, impact_map" and not row.setting.startswith("tolerance")]
-    assert [row.aim.microseconds for row in ours] == [each.microseconds for each in CALLS]
-    assert [row.reached for row in ours] == [row.microseconds <= row.aim.microseconds for row in ours]
-    faster = [row for row in rows if row.aim.times is not None]
-    assert [row.method for row in faster] == ["heyoka, terminal event"] * 4
-    assert [row.reached for row in faster] == [row.ratio >= 4 for row in faster]
-    assert all(row.reached is None for row in rows if row.aim == type(row.aim)())
-
-
-@pytest.mark.parametrize("kind", [*KINDS, FED])
+@pytest.mark.parametrize("kind", KINDS)
 def test_every_call_has_other_states(kind):
     """And every method has the same ones, in the same order."""
-    made = [(Fed("linear", n) if kind == FED else Draws("linear", kind, n)) for n in (50, 20)]
+    made = [Draws("linear", kind, n) for n in (50, 20)]
     first, few = [each() for each in made]
     assert np.array_equal(few.tau, first.tau[:20])
     assert np.array_equal(few.v, first.v[:20])
@@ -275,7 +249,7 @@ def test_interrupted_run_leaves_nothing(singimpact, tmp_path, monkeypatch):
 
 @pytest.mark.parametrize(
     ("arguments", "told"),
-    [(("mapp",), "unknown group 'mapp': the nearest known are map"),
+    [(("chater",), "unknown group 'chater': the nearest known are chatter"),
      (("chatter", "--plots", "{file}"), "cannot be written"),
      (("chatter", "-o", "{file}/absent/b.txt"), "cannot be written"),
      (("chatter", "--picture", "gif"), "'gif' is not one of"),

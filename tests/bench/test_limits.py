@@ -59,6 +59,6 @@ def test_every_call_ends(name):
 
 def test_ratios_are_stored_with_their_group_alone(singimpact):
     before = limit_rows.STORED.read_text()
-    refused = singimpact("bench", "map", "--quick", "--store")
+    refused = singimpact("bench", "chatter", "--quick", "--store")
     assert "give the group limit" in refused.output
     assert limit_rows.STORED.read_text() == before

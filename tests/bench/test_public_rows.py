@@ -89,7 +89,7 @@ def _rows(group: str) -> list[tuple[Case, Method]]:
     return [(case, method) for case in GROUPS[group](SMALL) for method in case.methods]
 
 
-@pytest.mark.parametrize("group", ["map", "chatter", pytest.param("public", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("group", ["chatter", pytest.param("public", marks=pytest.mark.slow)])
 def test_rows_named_for_the_package_call_public_names_only(group):
     rows = [(case, method) for case, method in _rows(group) if method.name.startswith("singimpact")]
     assert rows

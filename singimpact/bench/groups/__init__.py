@@ -2,12 +2,11 @@
 
 from collections.abc import Callable, Iterator
 
-from singimpact.bench.groups import chatter_rows, impact_map_rows, limit_rows, public_rows, series_rows
+from singimpact.bench.groups import chatter_rows, limit_rows, public_rows, series_rows
 from singimpact.bench.measuring import Case, Effort, Measured, measure
 
 GROUPS: dict[str, Callable[[Effort], Iterator[Case]]] = {
     "public": public_rows.cases,
-    "map": impact_map_rows.cases,
     "chatter": chatter_rows.cases,
     "series": series_rows.cases,
     "limit": limit_rows.cases,
@@ -15,7 +14,7 @@ GROUPS: dict[str, Callable[[Effort], Iterator[Case]]] = {
 
 
 def usual(effort: Effort) -> list[str]:
-    """The groups that are measured when none is named; `public` repeats cases of others.
+    """The groups that are measured when none is named; `public` has a page of its own.
 
     A quick look leaves out `limit`, which begins with new cache folders again and again.
     """

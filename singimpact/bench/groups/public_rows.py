@@ -1,7 +1,7 @@
 """`bench public`: the twelve calls of the page on run times, beside heyoka, scipy and a student's loops of numba.
 
-Cases of other groups and of orbits under names of one kind, with the loops beside them; and two studies, of which only
-the time is measured: no truth of a picture is known.
+Cases of the map, of chatter and of orbits under names of one kind, with the loops beside them; and two studies, of
+which only the time is measured: no truth of a picture is known.
 """
 
 from collections.abc import Callable, Iterator
@@ -20,7 +20,6 @@ from singimpact.bench.groups.impact_map_rows import (
     ACCURACY,
     HEYOKA,
     SCIPY,
-    Calls,
     derivative_case,
     map_case,
     sizes_of,
@@ -38,14 +37,14 @@ OVER = (-0.1, 0.25)  # clearances of the bifurcation diagram
 def cases(effort: Effort) -> Iterator[Case]:
     """The twelve cases."""
     maps = {
-        "linear, a state a call": ("linear", "generic", 1),
-        "linear, an array": ("linear", "generic", 0),
-        "linear, v from 1e-8 to 1e-2": ("linear", "v from 1e-8 to 1e-2", 0),
-        "Duffing, a state a call": ("duffing", "generic", 1),
-        "Duffing, an array": ("duffing", "generic", 0),
+        "linear, a state a call": ("linear", "generic", True),
+        "linear, an array": ("linear", "generic", False),
+        "linear, v from 1e-8 to 1e-2": ("linear", "v from 1e-8 to 1e-2", False),
+        "Duffing, a state a call": ("duffing", "generic", True),
+        "Duffing, an array": ("duffing", "generic", False),
     }
-    for name, (family, kind, states) in maps.items():
-        case = map_case(Calls(family, kind, states, 0.0), sizes_of(effort))
+    for name, (family, kind, alone) in maps.items():
+        case = map_case(family, kind, alone, sizes_of(effort))
         yield _beside(f"impact_map: {name}", case, _flown(family, kind, effort))
     yield _beside("derivative: linear, an array", derivative_case(sizes_of(effort)))
     for name, family in (("linear", "linear"), ("Duffing", "duffing")):

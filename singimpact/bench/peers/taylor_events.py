@@ -1,5 +1,8 @@
 """heyoka.py: adaptive Taylor integration with a terminal event x - c = 0 from above."""
 
+from collections.abc import Callable
+from math import nan
+from types import ModuleType
 from typing import Any
 
 from singimpact.bench.measuring import NotInstalled
@@ -16,24 +19,14 @@ def stepper(family: str, tolerance: float = 2.0**-52) -> Any:
     ------
     NotInstalled : heyoka is not there.
     """
-    try:
-        import heyoka
-    except ImportError:
-        raise NotInstalled("heyoka") from None
+    heyoka = _heyoka()
     x, u = heyoka.make_vars("x", "u")
     force = x if family == "linear" else x + 0.1 * u + 0.3 * x**3
-    event = heyoka.t_event(x - heyoka.par[1], direction=heyoka.event_direction.negative)
-    field = [(x, u), (u, heyoka.cos(heyoka.par[0] * heyoka.time) - force)]
-    flow = heyoka.taylor_adaptive(field, [0.0, 0.0], pars=[1.0, 0.0], t_events=[event], tol=tolerance)
+    first_event = _compiled([(x, u), (u, heyoka.cos(heyoka.par[0] * heyoka.time) - force)], tolerance)
 
     def fly(problem: Problem) -> tuple[float, float]:
-        flow.time = problem.tau
-        flow.state[:] = [problem.clearance, problem.v]
-        flow.pars[:] = [problem.omega, problem.clearance]
-        flow.reset_cooldowns()
-        if flow.propagate_until(problem.tau + LONGEST)[0] == heyoka.taylor_outcome.time_limit:
-            return float("nan"), float("nan")
-        return float(flow.time) - problem.tau, float(flow.state[1])
+        time, state = first_event(problem, [problem.clearance, problem.v])
+        return time - problem.tau, state[1]
 
     return fly
 
@@ -45,13 +38,9 @@ def varied(tolerance: float = 2.0**-52) -> Any:
     ------
     NotInstalled : heyoka is not there.
     """
-    try:
-        import heyoka
-    except ImportError:
-        raise NotInstalled("heyoka") from None
+    heyoka = _heyoka()
     x, u, y, y_dot, z, z_dot = heyoka.make_vars("x", "u", "y", "y_dot", "z", "z_dot")
     omega, time = heyoka.par[0], heyoka.time
-    event = heyoka.t_event(x - heyoka.par[1], direction=heyoka.event_direction.negative)
     field = [
         (x, u),
         (u, heyoka.cos(omega * time) - x),
@@ -60,15 +49,41 @@ def varied(tolerance: float = 2.0**-52) -> Any:
         (z, z_dot),
         (z_dot, -omega * heyoka.sin(omega * time) - z),
     ]
-    flow = heyoka.taylor_adaptive(field, [0.0] * 6, pars=[1.0, 0.0], t_events=[event], tol=tolerance)
+    first_event = _compiled(field, tolerance)
 
     def fly(problem: Problem) -> list[float]:
+        time, state = first_event(problem, [problem.clearance, problem.v, 0.0, 1.0, 0.0, 0.0])
+        return derivative_of_map(problem, time, state[1:])
+
+    return fly
+
+
+def _heyoka() -> ModuleType:
+    try:
+        import heyoka
+    except ImportError:
+        raise NotInstalled("heyoka") from None
+    return heyoka
+
+
+def _compiled(field: list[tuple[Any, Any]], tolerance: float) -> Callable[[Problem, list[float]], Any]:
+    """A function from a problem and a state to the time and the state at which x falls through c; nan without one.
+
+    Parameters
+    ----------
+    field : variables, the first of which is x, and their derivatives; par[0] is omega, par[1] the clearance.
+    """
+    heyoka = _heyoka()
+    event = heyoka.t_event(field[0][0] - heyoka.par[1], direction=heyoka.event_direction.negative)
+    flow = heyoka.taylor_adaptive(field, [0.0] * len(field), pars=[1.0, 0.0], t_events=[event], tol=tolerance)
+
+    def first_event(problem: Problem, start: list[float]) -> tuple[float, list[float]]:
         flow.time = problem.tau
-        flow.state[:] = [problem.clearance, problem.v, 0.0, 1.0, 0.0, 0.0]
+        flow.state[:] = start
         flow.pars[:] = [problem.omega, problem.clearance]
         flow.reset_cooldowns()
         if flow.propagate_until(problem.tau + LONGEST)[0] == heyoka.taylor_outcome.time_limit:
-            return [float("nan")] * 4
-        return derivative_of_map(problem, float(flow.time), flow.state[1:].tolist())
+            return nan, [nan] * len(start)
+        return float(flow.time), flow.state.tolist()
 
-    return fly
+    return first_event

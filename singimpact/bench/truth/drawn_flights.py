@@ -41,16 +41,6 @@ def hits(states: States, count: int) -> Truth:
     return _judged(states, count, values)
 
 
-def backward_hits(states: States, count: int) -> Truth:
-    """Flight times of the flights that led to the first states: of an undamped linear model, mirrored in time."""
-
-    def values(tau: Any, v: Any) -> tuple[list[Any], list[Any]]:
-        time, _, _ = _hit(states, -tau, v / _ball(states.restitution))
-        return [time], [time]
-
-    return _judged(states, count, values)
-
-
 def derivatives(states: States, count: int) -> Truth:
     """The four entries of D G at the first states of a linear model, row by row."""
 
