@@ -40,14 +40,13 @@ class SteepStates:
 
 
 def steep_states(
-    states: int, seed: int, workers: int | None, keep: str | None, balls: tuple[int, int, int, int]
+    states: int, seed: int, workers: int | None, keep: str | None, balls: tuple[int, int, int]
 ) -> SteepStates:
     """Fly random steep states and some of them in balls.
 
     Parameters
     ----------
-    balls : states in balls, how many of these with `digits=20`, and how many steep and how many smooth states with
-        20 and with 40 digits.
+    balls : states in balls, how many of these with `digits=20`, and how many steep states with 20 and with 40 digits.
     """
     from singimpact.bench import steep_balls, steep_digits, steep_states
     from singimpact.case_pools import WorkerPool
@@ -56,28 +55,25 @@ def steep_states(
     with WorkerPool(workers) as pool:
         checked = steep_states.check(states, seed, pool, keep)
         enclosures = steep_balls.check(checked, balls[:2], seed, pool, beside)
-        pairs = {
-            name: steep_digits.check(count, seed, pool, steep=name == "steep")
-            for name, count in zip(("steep", "smooth"), balls[2:], strict=True)
-        }
+        pairs = steep_digits.check(balls[2], seed, pool)
     rows = steep_states.rows(checked)
     listed = _listed(checked, seed)
     data = {
         "families": [asdict(row) for row in rows],
         "balls": asdict(enclosures),
-        "pairs": {name: asdict(pair) for name, pair in pairs.items()},
+        "pairs": {"steep": asdict(pairs)},
         "listed": listed,
     }
     parts = [
         _table(rows),
         _balls(enclosures),
-        *(_pairs(name, pair) for name, pair in pairs.items()),
+        _pairs(pairs),
         *(_lines(name, table) for name, table in listed.items()),
     ]
     return SteepStates(
         data,
         "\n\n".join(table for table in parts if table),
-        _is_wrong(rows, enclosures) or any(pair.apart for pair in pairs.values()),
+        _is_wrong(rows, enclosures) or bool(pairs.apart),
     )
 
 
@@ -140,8 +136,8 @@ def _balls(balls: Enclosures) -> str:
     return "\n".join(lines)
 
 
-def _pairs(name: str, pairs: Pairs) -> str:
-    """The summary of the states of steep or smooth families with 20 and with 40 digits."""
+def _pairs(pairs: Pairs) -> str:
+    """The summary of the steep states with 20 and with 40 digits."""
     if not pairs.states:
         return ""
     costs = "; ".join(
@@ -150,7 +146,7 @@ def _pairs(name: str, pairs: Pairs) -> str:
     )
     cases = f" (cases {', '.join(map(str, pairs.refused[:9]))})" if pairs.refused else ""
     return (
-        f"digits=20 and digits=40: {pairs.states} {name} states, {pairs.enclosed} enclosed by both, "
+        f"digits=20 and digits=40: {pairs.states} steep states, {pairs.enclosed} enclosed by both, "
         f"{pairs.misses} proved not to hit, {len(pairs.refused)} refused{cases}, "
         f"{pairs.apart} with the truth outside a radius\n{costs}"
     )
@@ -214,7 +210,6 @@ if TYPE_CHECKING:
 @click.argument("groups", metavar="[GROUP]...", nargs=-1)
 @click.option("--quick", is_flag=True, help="Fewer cases, states and rounds, within two minutes.")
 @click.option("--plots", metavar="DIR", help="Write a picture of time against error for each group into this folder.")
-@click.option("--picture", type=click.Choice(["png", "pdf", "svg"]), default="png", show_default=True)
 @page_format(", of the group public, with a .csv and a .png beside it")
 @click.option("--states", type=click.IntRange(1, 10**9), default=100_000, show_default=True, help="How many states.")
 @click.option("--seed", type=click.IntRange(0), default=0, show_default=True, help="Seed of the random states.")
@@ -230,7 +225,6 @@ if TYPE_CHECKING:
 @count_option("--balls", 1000, "Steep states flown in balls.")
 @count_option("--digits-checks", 100, "States in balls that are also flown with digits=20.")
 @count_option("--digit-pairs", 200, "Steep states enclosed twice, with digits=20 and digits=40.")
-@count_option("--smooth-pairs", 0, "Smooth states enclosed twice, as well.")
 @click.option("--store", is_flag=True, help="Store the ratios of the group limit in place of those of the package.")
 @output_options
 def command(
@@ -238,7 +232,6 @@ def command(
     quick: bool,
     store: bool,
     plots: str | None,
-    picture: str,
     form: str,
     states: int,
     seed: int,
@@ -248,7 +241,6 @@ def command(
     balls: int,
     digits_checks: int,
     digit_pairs: int,
-    smooth_pairs: int,
     as_json: bool,
     output: str | None,
 ) -> None:
@@ -261,8 +253,8 @@ def command(
 
     The group `states` compares random states with a slow solver of 60 digits; --states, --seed, --workers and
     --keep belong to it. With `--family steep` it compares 20 families of steep models with a solver of small fixed
-    steps, and --balls of the states with ball arithmetic; --digit-pairs and --smooth-pairs states are enclosed
-    twice. The exit code is 1 if an impact is wrong.
+    steps, and --balls of the states with ball arithmetic; --digit-pairs states are enclosed twice. The
+    exit code is 1 if an impact is wrong.
     """
     from singimpact.bench.groups import GROUPS, usual
     from singimpact.bench.measuring import FULL, QUICK
@@ -282,7 +274,7 @@ def command(
     texts = [_page(tables[0], output)] if form == "page" else [_text(table, form) for table in tables]
     wrong = _is_over(tables, store)
     if "states" in chosen and family == "steep":
-        steep = steep_states(states, seed, workers, keep, (balls, digits_checks, digit_pairs, smooth_pairs))
+        steep = steep_states(states, seed, workers, keep, (balls, digits_checks, digit_pairs))
         values["states"], wrong = steep.data, wrong or steep.wrong
         texts.append(steep.text)
     elif "states" in chosen:
@@ -290,7 +282,7 @@ def command(
         wrong |= any(row["wrong"] for row in values["states"])
         texts.append(text)
     if directory is not None:
-        _draw(tables, directory, picture)
+        _draw(tables, directory)
     emit(as_json_text(values) if as_json else "\n\n".join(texts), output)
     if wrong:
         sys.exit(1)
@@ -355,11 +347,11 @@ def _text(found: Measured, form: str) -> str:
     return "\n\n".join(part for part in parts if part)
 
 
-def _draw(found: list[Measured], place: Path, picture: str) -> None:
+def _draw(found: list[Measured], place: Path) -> None:
     from singimpact.bench.report import plotted
 
     for each in found:
-        save(plotted(each), place / f"bench-{each.group}.{picture}")
+        save(plotted(each), place / f"bench-{each.group}.png")
 
 
 def _states(states: int, seed: int, workers: int | None, keep: str | None) -> tuple[list[dict[str, Any]], str]:

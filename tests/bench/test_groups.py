@@ -252,7 +252,6 @@ def test_interrupted_run_leaves_nothing(singimpact, tmp_path, monkeypatch):
     [(("chater",), "unknown group 'chater': the nearest known are chatter"),
      (("chatter", "--plots", "{file}"), "cannot be written"),
      (("chatter", "-o", "{file}/absent/b.txt"), "cannot be written"),
-     (("chatter", "--picture", "gif"), "'gif' is not one of"),
      (("chatter", "--format", "page"), "--format page is not accepted with chatter")],
 )  # fmt: skip
 def test_refused_before_anything_is_measured(arguments, told, singimpact, tmp_path, monkeypatch):

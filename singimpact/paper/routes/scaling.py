@@ -10,10 +10,10 @@ from typing import Any, NamedTuple
 
 import sympy
 
-from singimpact.algebra.derivations import At, motion, substitution
+from singimpact.algebra.derivations import At, substitution
 from singimpact.paper.routes.equations import equation
 from singimpact.paper.routes.implicit import a_symbol, sigma as offset, t as delay, v_c
-from singimpact.paper.routes.unfolding import kappa, s, sigma, t
+from singimpact.paper.routes.unfolding import kappa, launched_under, sigma, t
 
 e, H, x, y, alpha, phi_1, phi_2 = sympy.symbols("e H x y alpha phi_1 phi_2")
 
@@ -81,12 +81,7 @@ def limit_launch() -> Any:
     >>> sympy.factor(limit_launch())
     -kappa*t*(6*e + 6*sigma**2 + 4*sigma*t + t**2)
     """
-    poly = sympy.Poly(limit_acceleration().subs(sigma, sigma + s), s)
-    displaced = sum(value * s ** (n + 2) / ((n + 1) * (n + 2)) for (n,), value in poly.terms())
-    velocity = sympy.expand(sympy.cancel(-displaced.subs(s, t) / t))
-    powers = reversed(sympy.Poly(limit_acceleration(), sigma).all_coeffs())
-    motion((sigma, y, t), y * t + sympy.expand(displaced.subs(s, t)), tuple(powers), {}, launch=velocity)
-    return velocity
+    return launched_under(limit_acceleration(), y)
 
 
 @equation("s6-leading")

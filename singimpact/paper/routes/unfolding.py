@@ -41,13 +41,21 @@ def launch_velocity() -> Any:
     >>> sympy.factor(launch_velocity())
     -kappa*t*(6*sigma**2 + 4*sigma*t + t**2 - 6)
     """
-    poly = sympy.Poly(acceleration().subs(sigma, sigma + s), s)
+    return launched_under(acceleration(), _velocity)
+
+
+def launched_under(push: Any, letter: Any) -> Any:
+    """The velocity with which a flight leaves sigma to be back after t, of x'' = push(sigma), a polynomial.
+
+    Parameters
+    ----------
+    letter : of the velocity, in the certificate of the motion.
+    """
+    poly = sympy.Poly(push.subs(sigma, sigma + s), s)
     displaced = sum(value * s ** (n + 2) / ((n + 1) * (n + 2)) for (n,), value in poly.terms())
     velocity = sympy.expand(sympy.cancel(-displaced.subs(s, t) / t))
-    pushed = reversed(sympy.Poly(acceleration(), sigma).all_coeffs())
-    motion(
-        (sigma, _velocity, t), _velocity * t + sympy.expand(displaced.subs(s, t)), tuple(pushed), {}, launch=velocity
-    )
+    pushed = reversed(sympy.Poly(push, sigma).all_coeffs())
+    motion((sigma, letter, t), letter * t + sympy.expand(displaced.subs(s, t)), tuple(pushed), {}, launch=velocity)
     return velocity
 
 

@@ -211,7 +211,7 @@ MUTANTS = {
         "height = 2 * k + (level",
         "s2-dense"),
     "a limit of launches without a term": (
-        "paper/routes/scaling.py",
+        "paper/routes/unfolding.py",
         "displaced = sum(value * s ** (n + 2) / ((n + 1) * (n + 2))",
         "displaced = sum(value * s ** (n + 2) / (n + 2)",
         "s6-scaling s6p-none"),

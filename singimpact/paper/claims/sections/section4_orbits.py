@@ -5,12 +5,14 @@ parts; what is left out is O(S) on a compact set of ratios, so that a strict ine
 small S too.  Only the existence of gamma uses a theorem, `STABLE`.
 """
 
+from collections.abc import Callable
 from typing import Any
 
 import sympy
 
 from singimpact.algebra.certificates import positive_on
-from singimpact.paper.claims.verifiers import is_zero, same
+from singimpact.paper.claims.claim import Check
+from singimpact.paper.claims.verifiers import every, is_zero, same
 from singimpact.paper.routes import ratios
 from singimpact.paper.routes.implicit import sigma, t
 from singimpact.paper.routes.ratios import l
@@ -73,6 +75,19 @@ def saddle(j: int) -> list[Part]:
             positive_on(factor - 1, l, 0, 1) and rises(j),
         ),
     ]
+
+
+def smooth(j: int) -> Callable[[Any], Check]:
+    """A verifier of the least order at which gamma may fail to be differentiable at w_*: none.
+
+    v = b S^(j+1) (1 - L)(P(L) + ...) with a smooth function L of S.
+    """
+
+    def verify(stated: Any) -> Check:
+        none = ("smooth of every order: no least order is left", stated == sympy.oo)
+        return every([*relation(j), *saddle(j), none], modulo=(STABLE,))
+
+    return verify
 
 
 def limit_of_DG(j: int) -> list[Part]:

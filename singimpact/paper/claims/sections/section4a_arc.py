@@ -216,14 +216,6 @@ def _sides(stated: tuple[str, str]) -> Check:
     )
 
 
-def _smooth(stated: int) -> Check:
-    """The least order at which gamma may fail to be differentiable at w_*: none, for v = b S^2 (1-L)(P(L) + ...)."""
-    return every(
-        [*orbits.relation(1), *orbits.saddle(1), ("smooth of every order: no least order is left", stated == sympy.oo)],
-        modulo=(orbits.STABLE,),
-    )
-
-
 def above_one(stated: Any, j: int) -> bool:
     """Whether a root of the characteristic polynomial of DG on gamma is the larger one: 1 is no root for any r."""
     matrix = DG_on_ray(j)
@@ -321,7 +313,7 @@ CLAIMS = (
         section="4.1(a)",
         title="gamma is smooth up to its end w_*, for every r in (0, 1)",
         printed=Statement(r"\gamma\in C^\infty\ \text{up to}\ w_*", sympy.oo),
-        verify=_smooth,
+        verify=orbits.smooth(1),
         mutants=(sympy.Integer(2), sympy.Integer(3)),
         rests_on=("t:t2-exists",),
     ),

@@ -222,14 +222,6 @@ def _exists(stated: tuple[int, int]) -> Check:
     )
 
 
-def _smooth(stated: Any) -> Check:
-    """The least order at which gamma may fail to be differentiable at the swan point: none."""
-    return every(
-        [*orbits.relation(2), *orbits.saddle(2), ("smooth of every order: no least order is left", stated == sympy.oo)],
-        modulo=(orbits.STABLE,),
-    )
-
-
 def _attracting(stated: tuple[int, int]) -> Check:
     """On gamma sigma -> lambda sigma + ..., lambda = 1 + m_*, and it lies in the stated interval for every r in (0, 1)."""
     low, high = stated
@@ -453,7 +445,7 @@ CLAIMS = (
         "t:t3-smooth",
         "gamma is smooth up to the swan point, for every r in (0, 1)",
         Statement(r"\gamma\in C^\infty\ \text{up to}\ w_*", sympy.oo),
-        _smooth,
+        orbits.smooth(2),
         (sympy.Integer(2), sympy.Integer(3)),
         ("t:t3",),
     ),
