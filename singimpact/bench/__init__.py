@@ -1,4 +1,4 @@
-"""Run time against error beside what a user would pick instead; stress sweeps; the reference cases as package data.
+"""Run time against error beside what a user would pick instead; stress sweeps; reference values as package data.
 
 Not here: what is measured (`flights`, `surface`, `dynamics`), claims of the paper (`paper`), pictures (`scenes`).
 """

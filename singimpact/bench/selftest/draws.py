@@ -1,7 +1,7 @@
 """Random states of a model, in its own units of time and velocity, and their flights."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import wraps
 from math import isfinite, pi, sqrt
 from typing import Any, NamedTuple
@@ -143,20 +143,8 @@ def flown(osc: ImpactOscillator, states: int, seed: int) -> Flown:
 
 
 def _joined(parts: list[Step]) -> Step:
-    names = (
-        "flight_time",
-        "velocity",
-        "status",
-        "depth",
-        "bound",
-        "condition",
-        "tau",
-        "v",
-        "velocity_condition",
-        "time_error",
-        "velocity_error",
-        "cause",
-    )
+    # notes and what is certified are no arrays, and no row reads them
+    names = [field.name for field in fields(Step) if field.name not in ("notes", "certified")]
 
     def joined(name: str) -> Any:
         return np.concatenate([np.broadcast_to(getattr(part, name), np.shape(part.status)) for part in parts])
