@@ -26,7 +26,7 @@ _FILES = {
     "selftest.responses": "derivatives rebounds",
     "selftest.truths": "balls digits fixed_steps",
     "steep_balls": "COLUMNS Flown enclosed summary",
-    "steep_families": "FAMILIES Family NAMES SMOOTH STEEP",
+    "steep_families": "FAMILIES Family NAMES PARAMETRIC SMOOTH STEEP",
     "steep_states": "drawn_of family_of",
     "stress.flown": "landing",
     "stress.judging": "Function LIMITS Trial moved worst",

@@ -363,4 +363,39 @@ SMOOTH = (
         (0.3, 3),
     ),
 )
-FAMILIES = STEEP + SMOOTH
+PARAMETRIC = (
+    Family(
+        "Mathieu, Duffing",
+        "(1 + A*cos(2*omega*t)/2)*x + damping*xdot + mu*x**3",
+        "A*cos(omega*t)",
+        lambda t, x, u, p: wave(t, p) - (1 + p[A] * cos(2 * p[OMEGA] * t) / 2) * x - p[DAMPING] * u - p[MU] * x * x * x,
+        none,
+        (0.1, 2),
+    ),
+    Family(
+        "stiffness pulse",
+        "x*(1 + mu*exp(K**2*(cos(omega*t) - 1)))",
+        "A*cos(omega*t)",
+        lambda t, x, _u, p: wave(t, p) - x * (1 + p[MU] * exp(-2 * (p[K] * sin(p[OMEGA] * t / 2)) ** 2)),
+        pulse,
+        (1, 20),
+    ),
+    Family(
+        "swinging stop",
+        "x + mu*(1 + tanh(K*(x - a)))*(1 + cos(omega*t)/2)",
+        "A*sin(omega*t)",
+        lambda t, x, _u, p: p[A] * sin(p[OMEGA] * t) - x - p[MU] * step_at(x, p[A_X], p) * (1 + cos(p[OMEGA] * t) / 2),
+        stop,
+        (0.3, 10),
+    ),
+    Family(
+        "no clock, friction",
+        "x - mu*(1 - x**2)*xdot + A*tanh(K*xdot)/10",
+        "0",
+        lambda _t, x, u, p: p[MU] * (1 - x * x) * u - x - p[A] * tanh(p[K] * u) / 10,
+        lambda n: [(VELOCITY, 0.0, 1 / n["K"], n["A"] * n["K"] / 10, 0.0)],
+        (0.05, 3),
+    ),
+)
+"""Models in whose f t occurs, and one without t at all."""
+FAMILIES = STEEP + SMOOTH + PARAMETRIC

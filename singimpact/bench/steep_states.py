@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from singimpact.algebra.numbers import EPSILON, Array
-from singimpact.bench.steep_families import FAMILIES, NAMES, SMOOTH, STEEP, Family
+from singimpact.bench.steep_families import FAMILIES, NAMES, PARAMETRIC, SMOOTH, STEEP, Family
 from singimpact.bench.truth import graded_steps
 from singimpact.bench.truth.graded_steps import HIT, MISS, PHASE, Motion
 from singimpact.cases import sweep
@@ -45,6 +45,8 @@ class DrawSettings:
 
 
 DRAW = DrawSettings()
+PARAMETRIC_FROM = 10**9
+"""The number of the first case of the parametric families."""
 COLUMNS = (
     "family",
     "steepness",
@@ -101,7 +103,9 @@ def _compiled(index: int) -> Any:
 
 
 def family_of(number: int) -> Family:
-    """The family of a case: steep ones in turn, and now and then a smooth one."""
+    """The family of a case: steep ones in turn, and now and then a smooth one; parametric ones from 10^9 on."""
+    if number >= PARAMETRIC_FROM:
+        return PARAMETRIC[number % len(PARAMETRIC)]
     turn, place = divmod(number, DRAW.smooth)
     if place == DRAW.smooth - 1:
         return SMOOTH[turn % len(SMOOTH)]
@@ -172,16 +176,23 @@ def flown(seed: int, number: int) -> Array:
 
 
 def check(
-    count: int, seed: int, executor: Executor | None = None, output: str | Path | None = None
+    count: int,
+    seed: int,
+    executor: Executor | None = None,
+    output: str | Path | None = None,
+    parametric: bool = False,
 ) -> dict[str, Array]:
     """Fly `count` steep states, rounded up to whole cases, and a tenth more smooth ones; a named column each.
 
     Parameters
     ----------
     executor, output : as in `singimpact.cases.sweep`; an interrupted check goes on.
+    parametric : fly the parametric families alone, a quarter of the states each.
     """
     cases = -(-count // DRAW.each)
     numbers = range(cases + cases // (DRAW.smooth - 1))
+    if parametric:
+        numbers = range(PARAMETRIC_FROM, PARAMETRIC_FROM + cases)
     table = sweep(partial(flown, seed), numbers, executor, output).reshape(-1, len(COLUMNS))
     return {name: table[:, index] for index, name in enumerate(COLUMNS)}
 

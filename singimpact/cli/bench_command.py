@@ -40,20 +40,21 @@ class SteepStates:
 
 
 def steep_states(
-    states: int, seed: int, workers: int | None, keep: str | None, balls: tuple[int, int, int]
+    states: int, seed: int, workers: int | None, keep: str | None, balls: tuple[int, int, int], parametric: bool
 ) -> SteepStates:
     """Fly random steep states and some of them in balls.
 
     Parameters
     ----------
     balls : states in balls, how many of these with `digits=20`, and how many steep states with 20 and with 40 digits.
+    parametric : fly the families in whose f t occurs, in place of the steep ones.
     """
     from singimpact.bench import steep_balls, steep_digits, steep_states
     from singimpact.case_pools import WorkerPool
 
     beside = None if keep is None else Path(keep).with_name(f"{Path(keep).stem}-balls.npz")
     with WorkerPool(workers) as pool:
-        checked = steep_states.check(states, seed, pool, keep)
+        checked = steep_states.check(states, seed, pool, keep, parametric)
         enclosures = steep_balls.check(checked, balls[:2], seed, pool, beside)
         pairs = steep_digits.check(balls[2], seed, pool)
     rows = steep_states.rows(checked)
@@ -217,10 +218,10 @@ if TYPE_CHECKING:
 @click.option("--keep", metavar="FILE.npz", help="Store results in this file, and resume from it.")
 @click.option(
     "--family",
-    type=click.Choice(["reference", "steep"]),
+    type=click.Choice(["reference", "steep", "parametric"]),
     default="reference",
     show_default=True,
-    help="Of random states: linear and cubic, or steep layers.",
+    help="Of random states: linear and cubic, steep layers, or f with t.",
 )
 @count_option("--balls", 1000, "Steep states flown in balls.")
 @count_option("--digits-checks", 100, "States in balls that are also flown with digits=20.")
@@ -253,8 +254,8 @@ def command(
 
     The group `states` compares random states with a slow solver of 60 digits; --states, --seed, --workers and
     --keep belong to it. With `--family steep` it compares 20 families of steep models with a solver of small fixed
-    steps, and --balls of the states with ball arithmetic; --digit-pairs states are enclosed twice. The
-    exit code is 1 if an impact is wrong.
+    steps, with `--family parametric` four in whose f t occurs or that have no t at all, and --balls of the states with
+    ball arithmetic; --digit-pairs states are enclosed twice. The exit code is 1 if an impact is wrong.
     """
     from singimpact.bench.groups import GROUPS, usual
     from singimpact.bench.measuring import FULL, QUICK
@@ -273,8 +274,9 @@ def command(
     values = {"quick": quick, **_joined(tables)}
     texts = [_page(tables[0], output)] if form == "page" else [_text(table, form) for table in tables]
     wrong = _is_over(tables, store)
-    if "states" in chosen and family == "steep":
-        steep = steep_states(states, seed, workers, keep, (balls, digits_checks, digit_pairs))
+    if "states" in chosen and family != "reference":
+        sizes, parametric = (balls, digits_checks, digit_pairs), family == "parametric"
+        steep = steep_states(states, seed, workers, keep, sizes, parametric)
         values["states"], wrong = steep.data, wrong or steep.wrong
         texts.append(steep.text)
     elif "states" in chosen:

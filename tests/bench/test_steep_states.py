@@ -15,6 +15,7 @@ from singimpact.bench import (
     HIT,
     MISS,
     NAMES,
+    PARAMETRIC,
     PHASE,
     POSITION,
     STEEP,
@@ -46,8 +47,7 @@ def test_plain_function_is_the_text(family: Family) -> None:
         x, u = rng.choice([n["a"] + near, case.clearance]), rng.choice([near, n["w"] + near, case.v[0]])
         t = rng.choice([2 * pi + near, pi / 2 + near, case.tau[0]]) / n["omega"]
         plain = family.acceleration(t, x, u, [n[name] for name in NAMES])
-        f = evaluate(osc.force(), {"x": x, "xdot": u}, DOUBLES)
-        g = evaluate(osc.forcing(), {"t": t}, DOUBLES)
+        f, g = (evaluate(tree, {"x": x, "xdot": u, "t": t}, DOUBLES) for tree in (osc.force(), osc.forcing()))
         # K^2 (cos - 1) loses digits in the text, which the plain function keeps
         assert plain == pytest.approx(g - f, rel=1e-9, abs=1e-9 + 1e-15 * n["K"] ** 2)
 
@@ -62,11 +62,20 @@ def test_models_of_a_family_share_one_text(family: Family) -> None:
 
 def test_twenty_families_are_drawn_alike_everywhere() -> None:
     assert len(STEEP) == 20
-    assert {steep_states.family_of(number) for number in range(77)} == set(FAMILIES)
+    assert {steep_states.family_of(number) for number in range(77)} == set(FAMILIES) - set(PARAMETRIC)
     one, other = steep_states.drawn(3, 17), steep_states.drawn(3, 17)
     assert one.numbers == other.numbers
     assert (one.tau == other.tau).all()
     assert steep_states.drawn(3, 18).numbers != one.numbers
+
+
+def test_no_first_hit_of_the_parametric_families_is_wrong() -> None:
+    columns = steep_states.check(200, 1, parametric=True)
+    assert {FAMILIES[int(index)] for index in columns["family"]} == set(PARAMETRIC)
+    assert np.isin(columns["true_status"], (graded_steps.HIT, graded_steps.MISS)).mean() > 0.95
+    assert not steep_states.wrong(columns).any()
+    late = columns | {"flight_time": columns["flight_time"] * (1 + 1e-6)}
+    assert steep_states.wrong(late).sum() > 150
 
 
 KNOWN = (
