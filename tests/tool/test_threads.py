@@ -32,6 +32,8 @@ WAVES = si.linear(2, "0.3", "1/2", damping="0.1")
 CUBIC = si.ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "cos(1.7*t)", "0.3", "0.6")
 BENT = si.ImpactOscillator("x", "cos(2*t)", "0.3", "-0.5*v + v**3/10")
 CLOSED = si.linear(4, 0, "1/2")
+PARAMETRIC = si.ImpactOscillator("(1 + 0.3*cos(2*t))*x + 0.1*xdot + 0.2*x**3", "cos(t)", "0.2", "0.8")
+CLOCKLESS = si.ImpactOscillator("x - (1 - x**2)*xdot", "0", "-1.5", "0.8")
 
 
 def swans(digits):
@@ -76,7 +78,8 @@ borders = functools.partial(si.border_orbits, si.linear("2.8", "0.6", "1/2"), be
 CALLS = {
     "ImpactOscillator.impact_map": (
         [lambda d: LINEAR.impact_map("1.2", "0.01", digits=d), lambda d: BENT.impact_map("0.3", "0.7", digits=d),
-         lambda d: CUBIC.impact_map("1.2", "0.1", digits=d)],
+         lambda d: CUBIC.impact_map("1.2", "0.1", digits=d), lambda d: PARAMETRIC.impact_map("1.2", "0.1", digits=d),
+         lambda d: CLOCKLESS.impact_map("1.2", "0.1", digits=d)],
         (5, 20, 33),
     ),
     "ImpactOscillator.first_hit": ([lambda d: WAVES.first_hit(["0.1", "pi/3"], [0, "1e-30"], digits=d)], (15, 40, 70)),
@@ -88,7 +91,8 @@ CALLS = {
     "Crossing.certified": ([lambda d: crossing().certified(d)], (5,)),
     "Event.certified": ([lambda d: [event.certified(d) for event in events()]], (15, 30)),
     "ImpactOscillator.chatter_limit": (
-        [lambda d: WAVES.chatter_limit("1.2", "0.01", digits=d), lambda d: BENT.chatter_limit("1.2", "0.01", digits=d)],
+        [lambda d: WAVES.chatter_limit("1.2", "0.01", digits=d), lambda d: BENT.chatter_limit("1.2", "0.01", digits=d),
+         lambda d: PARAMETRIC.chatter_limit("2.5", "0.01", digits=d)],
         (12, 30),
     ),
     "theory.grazing_map": (

@@ -14,6 +14,8 @@ MODELS = {
     "linear": si.linear("2.8", 0, "0.8"),
     "linear with a law": si.linear("2.8", 0, "-0.8*v - 0.1*(-v)**1.5"),
     "duffing": si.ImpactOscillator("x + x**3", "cos(1.7*t)", "0.3", "0.6"),
+    "parametric": si.ImpactOscillator("(1 + cos(2*t)/5)*x + x**3", "cos(t)", "0.3", "0.6"),
+    "without a clock": si.ImpactOscillator("x - (1 - x**2)*xdot", "0", "-1.5", "0.8"),
 }
 
 

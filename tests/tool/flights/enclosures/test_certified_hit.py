@@ -11,7 +11,7 @@ from reference_states import states
 from scipy.integrate import solve_ivp
 
 from singimpact.algebra import Balls, balls_at, constant, exact
-from singimpact.bench import SMOOTH, STEEP, drawn_of
+from singimpact.bench import PARAMETRIC, SMOOTH, STEEP, drawn_of
 from singimpact.flights import Launch, NoHit, Refused, certified_hit
 from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.oscillator import Oscillator
@@ -45,7 +45,10 @@ def test_reference_states_are_certified_to_thirty_digits():
 
 @pytest.mark.parametrize(
     "family",
-    [pytest.param(each, marks=pytest.mark.slow if i % 2 else (), id=each.name) for i, each in enumerate(SMOOTH)],
+    [
+        pytest.param(each, marks=pytest.mark.slow if i % 2 else (), id=each.name)
+        for i, each in enumerate((*SMOOTH, PARAMETRIC[0]))
+    ],
 )
 def test_twenty_digits_contain_forty(family):
     case = drawn_of(family, np.random.default_rng(3), 4)
@@ -60,7 +63,7 @@ def test_twenty_digits_contain_forty(family):
             assert all(b.rad() < abs(b.mid()) * 1e-40 for b in fine[:4])
 
 
-@pytest.mark.parametrize("family", STEEP[::5], ids=lambda family: family.name)
+@pytest.mark.parametrize("family", [*STEEP[::5], *PARAMETRIC[1:3]], ids=lambda family: family.name)
 def test_steep_families_are_certified_too(family):
     case = drawn_of(family, np.random.default_rng(4), 1)
     tau, v = float(case.tau[0]), float(case.v[0])
