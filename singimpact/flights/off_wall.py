@@ -71,6 +71,8 @@ class Launched(Result):
 
 
 NAMES = ("t", "xdot", "x")
+FEW_STARTS = 1000
+"""Starts of a call up to which reading them costs as much as their flights."""
 
 
 def launch(osc: Oscillator, x: Any, xdot: Any, t: Any, *, horizon: Any = None) -> Launched:
@@ -100,6 +102,9 @@ def launch(osc: Oscillator, x: Any, xdot: Any, t: Any, *, horizon: Any = None) -
         launched = _of_one(osc, x, xdot, t)
         if launched is not None:
             return launched
+    launched = _of_few(osc, x, xdot, t) if horizon is None else None
+    if launched is not None:
+        return launched
     require_room(("x", x), ("xdot", xdot), ("t", t))
     columns = [as_written(name, value) for name, value in (("x", x), ("xdot", xdot), ("t", t))]
     try:
@@ -131,6 +136,31 @@ def _of_one(osc: Oscillator, x: float, xdot: float, t: float) -> Launched | None
     after = abs(model.r * velocity) if model.constant_restitution else float(rebound(osc, np.array(velocity)))
     status = Status.no_rebound if isnan(after) else Status.hit
     return Launched(t + time, after, time, velocity, SCALAR_STATUS[status], SCALAR_STATUS[0])
+
+
+def _of_few(osc: Oscillator, x: Any, xdot: Any, t: Any) -> Launched | None:
+    """Plain hits from a small array of doubles off the wall; None for all that is not plain."""
+    if not all(
+        type(column) is float or (type(column) is np.ndarray and column.dtype == float) for column in (x, xdot, t)
+    ):
+        return None
+    model, (high, low) = _usual(osc)
+    heights = (x - high) - low
+    try:
+        total = heights + xdot + t  # of their shape; not finite where one of them is not
+    except ValueError:
+        return None
+    if not 0 < np.size(total) <= FEW_STARTS or not model.constant_restitution or not np.isfinite(total).all():
+        return None
+    if not np.min(heights) > 0 or not np.max(np.abs(t)) < model.nearest:
+        return None
+    tau, u, z = (np.broadcast_to(column, total.shape).ravel() for column in (t, xdot, heights))
+    codes, (time, velocity, *_) = model.drops(tau, u, z)
+    if np.count_nonzero(codes):
+        return None
+    columns = (tau + time, np.abs(model.r * velocity), time, velocity, np.zeros(tau.size, np.int8))
+    tau, after, time, velocity, cause = (column.reshape(total.shape)[()] for column in columns)
+    return Launched(tau, after, time, velocity, status_array(np.zeros(total.shape, np.int8)), cause)
 
 
 @lru_cache(maxsize=256)

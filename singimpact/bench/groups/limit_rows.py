@@ -193,6 +193,10 @@ def calls(effort: Effort) -> list[Method]:
             "inverse_map": (osc.inverse_map, 10.0),
         }
         rows.append(_drawn("impact_map", f"{name}, ten states", ten, _states(count), _split(10, osc.impact_map)))
+        rows += [
+            _drawn(what, f"{name}, a hundred states", ten, _states(count), _split(100, ones[what][0]))
+            for what in ("first_hit", "launch")
+        ]
         for what, (call, aim) in ones.items():
             rows.append(_drawn(what, f"{name}, one state", aim, _states(count), _split(1, call)))
     osc, times, orbit = MODELS["linear"], np.linspace(0.01, 1, 1000), MODELS["linear"].orbit(0.3, 0.7, 300)
