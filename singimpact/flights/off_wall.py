@@ -102,8 +102,7 @@ def launch(osc: Oscillator, x: Any, xdot: Any, t: Any, *, horizon: Any = None) -
         launched = _of_one(osc, x, xdot, t)
         if launched is not None:
             return launched
-    launched = _of_few(osc, x, xdot, t) if horizon is None else None
-    if launched is not None:
+    elif horizon is None and (launched := _of_few(osc, x, xdot, t)) is not None:
         return launched
     require_room(("x", x), ("xdot", xdot), ("t", t))
     columns = [as_written(name, value) for name, value in (("x", x), ("xdot", xdot), ("t", t))]

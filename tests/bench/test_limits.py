@@ -54,7 +54,7 @@ def test_every_row_has_a_stored_ratio():
 def test_every_call_ends(name):
     """Each once: a row whose call raises would be missed by the command alone."""
     for method in CASES[name].methods:
-        method.run(*(() if method.draw is None else (replace(method.draw, count=20)(),)))
+        method.run(*(() if method.draw is None else (replace(method.draw, count=200)(),)))
 
 
 def test_ratios_are_stored_with_their_group_alone(singimpact):
