@@ -265,7 +265,7 @@ FUNCTIONS = (
     ),
     Function(
         "flight",
-        _sweeps(_flight, ("r -> 0", "r -> 1", "steep layers")),
+        _sweeps(_flight, ("r -> 0", "r -> 1", "steep layers", "t in f")),
         BALLS,
         "a flight knows no r; balls of steep flights give the hit alone",
     ),

@@ -185,6 +185,17 @@ def _steep(family: str, points: int) -> Iterator[Launch]:
             yield SteepLaunch(force, 1.0, tau=tau, v=2.0, force=force, forcing=forcing, steepness=float(K))
 
 
+def _parametric(family: str, points: int) -> Iterator[Launch]:
+    """Slow launches with t in f, a modulation that vanishes, and slow launches of a model without t."""
+    for off in powers(max(points // 3, 2), 12) if family == "linear" else ():
+        for force, forcing, tau, v in (
+            ("(1 + cos(2*t)/3)*x + xdot*(1 + sin(t))/10", "cos(t) - 1/5", 2.5, off),
+            (f"(1 + {off!r}*cos(2*t))*x + x**3/5", "cos(t)", 0.3, 1.0),
+            ("x - (1 - x**2)*xdot", "-1/5", 0.0, off),
+        ):
+            yield SteepLaunch(force, 1.0, tau=tau, v=v, force=force, forcing=forcing, steepness=1.0)
+
+
 PLACES: dict[str, Launches] = {
     "v -> 0": _small_v,
     "t -> 0": _short,
@@ -198,6 +209,7 @@ PLACES: dict[str, Launches] = {
     "huge tau": _late,
     "long flights": _long,
     "steep layers": _steep,
+    "t in f": _parametric,
 }
 
 
