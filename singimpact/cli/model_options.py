@@ -88,7 +88,7 @@ def orbit_options(function: Function) -> Function:
         metavar="N K",
         default=(1, 1),
         show_default=True,
-        help="N impacts in K periods of the forcing; N = 0: no impact.",
+        help="N impacts in K periods of the forcing; N = 0: no impact. Without t: limit cycles of N impacts.",
     )(function)
 
 
@@ -110,7 +110,8 @@ def take_orbits(model: ImpactOscillator, orbit: tuple[int, int], start: tuple[st
     ------
     InputError : there is none.
     """
-    orbits = model.periodic(*orbit, start=start)
+    # a model without t has limit cycles, which count no periods
+    orbits = model.periodic(orbit[0]) if model.autonomous else model.periodic(*orbit, start=start)
     if not orbits:
         more = f" ({'; '.join(orbits.notes)})" if orbits.notes else ""
         raise InputError(
@@ -153,7 +154,13 @@ def on_branch(orbit: PeriodicOrbit, branch: Branch) -> bool:
         share = gap[i] / (gap[i] - gap[i + 1]) if gap[i] != gap[i + 1] else 0.0
         tau, v = ((1 - share) * states[i] + share * states[i + 1] for states in (branch.tau, branch.v))
         try:
-            near = periodic(osc, branch.n, branch.k, start=list(zip(tau.tolist(), v.tolist(), strict=True)))
+            near: list[PeriodicOrbit]
+            if osc.autonomous:
+                cycles = periodic(osc, branch.n)
+                gaps = [abs(float(cycle.v[0]) - float(v[0])) for cycle in cycles]
+                near = [cycles[gaps.index(min(gaps))]] if gaps else []
+            else:
+                near = periodic(osc, branch.n, branch.k, start=list(zip(tau.tolist(), v.tolist(), strict=True)))
         except InputError:
             continue
         for other in near:

@@ -172,19 +172,28 @@ def swan_points_over_clearance(model: Oscillator, between: tuple[Fraction, Fract
     return ordered
 
 
+def swans_are_listed(model: Oscillator) -> bool:
+    """Whether tau_* of the swans over the clearance are zeros of a function of t alone."""
+    return not model.parametric or not {"x", "t"} <= names_in(derivative(_force_at_rest(model), "x"))
+
+
+def _force_at_rest(model: Oscillator) -> Expression:
+    return substitute(model.force(), {"xdot": number(0)})
+
+
 def _slope_of_swans(model: Oscillator) -> tuple[Expression, Expression]:
     """A function of t with the zeros of swan points, and the factor that gives it the sign of a_c'."""
     slope = derivative(model.forcing(), "t")
     if not model.parametric:
         return slope, number(1)
-    rest = substitute(model.force(), {"xdot": number(0)})
-    A, push = derivative(rest, "x"), subtract(model.forcing(), substitute(rest, {"x": number(0)}))
-    if "t" not in names_in(A):
-        return derivative(push, "t"), number(1)
-    if "x" in names_in(A):
+    if not swans_are_listed(model):
         raise InputError(
             f"f = {model.f} depends on t together with powers of x: swan points need f(x, 0, t) linear in x"
         )
+    rest = _force_at_rest(model)
+    A, push = derivative(rest, "x"), subtract(model.forcing(), substitute(rest, {"x": number(0)}))
+    if "t" not in names_in(A):
+        return derivative(push, "t"), number(1)
     return subtract(multiply(derivative(push, "t"), A), multiply(push, derivative(A, "t"))), A
 
 

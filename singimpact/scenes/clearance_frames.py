@@ -12,7 +12,7 @@ from singimpact.algebra.expressions import evaluate, names_in, number, substitut
 from singimpact.algebra.numbers import Array, as_float, compare
 from singimpact.algebra.rings import DOUBLES
 from singimpact.contact.points import is_polynomial
-from singimpact.contact.swans import SwanPoint, swan_points_over_clearance
+from singimpact.contact.swans import SwanPoint, swan_points_over_clearance, swans_are_listed
 from singimpact.dynamics.invariant_arcs import grown_gamma
 from singimpact.inputs import refuse
 from singimpact.oscillator.model import Oscillator
@@ -171,7 +171,7 @@ def _nearest_swan(model: Oscillator, between: tuple[Fraction, Fraction] | None) 
     here = as_float(model.clearance)
     if between is None and not is_polynomial(substitute(model.force(), {"xdot": number(0)})):  # no bound of all swans
         between = Fraction(here - SETTINGS.around), Fraction(here + SETTINGS.around)
-    swans = swan_points_over_clearance(model, between) if _feels_clearance(model) else ()
+    swans = swan_points_over_clearance(model, between) if _feels_clearance(model) and swans_are_listed(model) else ()
     return min(swans, key=lambda swan: abs(swan.clearance - here), default=None)
 
 

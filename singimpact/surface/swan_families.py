@@ -12,7 +12,7 @@ from singimpact.algebra.expressions import Expression, Name
 from singimpact.algebra.isolated_zeros import DoubleZero, DoubleZeros, double_zeros
 from singimpact.algebra.numbers import Array, as_float
 from singimpact.contact.contact import acceleration, rest_acceleration
-from singimpact.contact.swans import swan_points_over_clearance
+from singimpact.contact.swans import swan_points_over_clearance, swans_are_listed
 from singimpact.flights.flight_path import many_paths
 from singimpact.flights.impact_map import first_hit
 from singimpact.flights.inverse_map import backwards
@@ -101,7 +101,7 @@ class Family:
 def swans_met(family: Family, values: Array) -> tuple[list[Transition], tuple[str, ...]]:
     """Double zeros of a_c, isolated with proof, and the reasons why one may be missing."""
     between = Fraction(float(values[0])), Fraction(float(values[-1]))
-    if family.over == "clearance":
+    if family.over == "clearance" and swans_are_listed(family.model):
         swans = swan_points_over_clearance(family.model, between)
         inside = [swan for swan in swans if between[0] <= Fraction(swan.clearance) <= between[1]]
         return [Transition(f"swan, {swan.kind}", swan.clearance, swan.tau, 0.0, (swan.tau,)) for swan in inside], ()

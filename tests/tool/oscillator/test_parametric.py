@@ -173,3 +173,15 @@ def test_the_period_is_common_to_force_and_forcing():
     # a part of f in t alone is a forcing, and the model is linear
     moved, plain = si.ImpactOscillator("x - cos(2*t)", "0", 0, "0.8"), si.linear(2, 0, "0.8")
     assert moved.first_hit(0.3, 0.5).flight_time == plain.first_hit(0.3, 0.5).flight_time
+
+
+def test_transitions_name_the_swans_of_a_stiffness_that_moves_beside_a_cube(osc):
+    swans = [each for each in osc.transitions(over="clearance", between=(-1, 1)) if each.kind.startswith("swan")]
+    # a_c = cos(w t) - (1 + 0.3 cos(2 w t)) c - 0.2 c^3 is even in t: one swan at t = 0, one half a period later
+    level = np.roots([0.2, 0, 1.3, -1])
+    level = float(level[np.isreal(level)].real[0])
+    assert [each.value for each in swans] == [pytest.approx(-level, abs=1e-12), pytest.approx(level, abs=1e-12)]
+    for swan in swans:
+        model = osc.replace(clearance=swan.value)
+        assert abs(model.acceleration(swan.tau)) < 1e-14
+        assert abs(model.acceleration(swan.tau, order=1)) < 1e-14

@@ -14,6 +14,7 @@ from singimpact.scenes import CURVES, PENS, clearance_film, explore_page, on_dar
 
 NEGATIVE = si.linear(2, "0.9", "0.5")
 DUFFING = si.ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "cos(omega*t)", "0.7", "0.6", {"omega": "1.7"})
+PARAMETRIC = si.ImpactOscillator("(1 + 0.3*cos(2*t))*x + 0.1*xdot + 0.2*x**3", "cos(t)", "0.15", "0.7")
 BENT = si.ImpactOscillator(
     "tanh(x) + 0.2*xdot + k*x/(1 + x**2)", "exp(sin(2*t)) - 1", "0.2", "-0.8*v + b*v**2", {"k": "0.5", "b": "0.05"}
 )
@@ -260,7 +261,7 @@ def flown(browser, model, tau, v, impacts):
     "model",
     [
         NEGATIVE.replace(clearance="0.15"),
-        *(pytest.param(each, marks=pytest.mark.slow) for each in (DUFFING.replace(clearance="0.15"), BENT)),
+        *(pytest.param(each, marks=pytest.mark.slow) for each in (DUFFING.replace(clearance="0.15"), BENT, PARAMETRIC)),
     ],
 )
 def test_orbits_of_the_page_are_those_of_python(opened, model):
