@@ -27,6 +27,8 @@ class CycleSettings:
     starts: int = 2000
     # halvings of a bracket before Newton's method
     halvings: int = 12
+    # velocities that return with themselves up to this part: where two neighbours do, orbits form a continuum
+    equal: float = 1e-11
     # a velocity below this part of the fastest rate is that of a graze
     graze: float = 1e-10
 
@@ -63,20 +65,24 @@ class CycleClosing(Closing):
         return [(0.0, 0.0, v, span) for v, span in zip(speeds, spans, strict=True)]
 
 
-def cycles_found(osc: Oscillator, n: int) -> list[Array]:
-    """Points of limit cycles of n impacts, from sign changes of v^(n) - v over a grid of velocities.
+def cycles_found(osc: Oscillator, n: int) -> tuple[list[Array], bool]:
+    """Points of limit cycles of n impacts, from sign changes of v^(n) - v over a grid, and whether a continuum closes.
 
     Examples
     --------
-    >>> (point,) = cycles_found(Oscillator("x - (1 - x**2)*xdot", "0", "-1.5", "0.8"), 1)
+    >>> (point,), continuum = cycles_found(Oscillator("x - (1 - x**2)*xdot", "0", "-1.5", "0.8"), 1)
     >>> round(float(point[0]), 8), round(float(point[1]), 8)  # T and v
     (4.81893846, 1.68586826)
+    >>> cycles_found(Oscillator("x", "0", "-1/2", 1), 1)  # without losses every orbit closes
+    ([], True)
     """
     closing, rate = CycleClosing(family(osc), n, n), fastest_rate(osc)
     size = abs(acceleration_at(osc, 0.0)) / rate or rate * max(abs(as_float(osc.clearance)), 1.0)
     v = size * np.geomspace(SETTINGS.low, SETTINGS.high, SETTINGS.starts)
     gain = _returned(osc, v, n)[1] - v
-    jump = np.flatnonzero((gain[:-1] > 0) != (gain[1:] > 0))
+    equal = np.abs(gain) <= SETTINGS.equal * v
+    rounding = equal[:-1] & equal[1:]
+    jump = np.flatnonzero(((gain[:-1] > 0) != (gain[1:] > 0)) & ~rounding)
     jump = jump[np.isfinite(gain[jump]) & np.isfinite(gain[jump + 1])]
     low, high, rises = v[jump], v[jump + 1], gain[jump] > 0
     for _ in range(SETTINGS.halvings):
@@ -89,7 +95,7 @@ def cycles_found(osc: Oscillator, n: int) -> list[Array]:
         root = closing.newton(closing.point(times[:-1], speeds[:-1], float(times[-1]))) if times[-1] > 0 else None
         if root is not None:
             points.append(root[0])
-    return points
+    return points, bool(rounding.any())
 
 
 def _returned(osc: Oscillator, v: Array, n: int) -> tuple[Array, Array]:

@@ -155,9 +155,13 @@ def _limit_cycles(osc: Oscillator, n: Any, others: tuple[Any, ...]) -> PeriodicO
             raise refuse(
                 name, value, f"no {name} for a model in which t does not occur: osc.periodic(n) lists its cycles"
             )
+    if n in (0, np.inf):
+        raise refuse("n", n, "a whole number from 1 to 1000: a cycle is listed with its impacts, none of which rests")
     count = _count("n", n, 1)
-    orbits = [orbit for orbit in _judged(osc, count, count, cycles_found(osc, count)) if orbit.visible]
-    return PeriodicOrbits(orbits, (CYCLES_SEARCHED,))
+    points, continuum = cycles_found(osc, count)
+    orbits = [orbit for orbit in _judged(osc, count, count, points) if orbit.visible]
+    notes = (f"velocities return as they were after n = {count}: a continuum of orbits, none is listed",)
+    return PeriodicOrbits(orbits, (CYCLES_SEARCHED,), notes if continuum else ())
 
 
 def _doubts_of_two(osc: Oscillator, k: int, listed: list[PeriodicOrbit]) -> tuple[str, ...]:

@@ -121,10 +121,22 @@ def test_arguments_that_mean_nothing_without_a_clock_are_refused(osc):
     for arguments, name in (({"k": 1}, "k"), ({"digits": 20}, "digits"), ({"v": (0.1, 1)}, "v")):
         with pytest.raises(InputError, match=rf"{name} = .* is not accepted"):
             osc.periodic(1, **arguments)
+    for n in (0, np.inf):
+        with pytest.raises(InputError, match="a cycle is listed with its impacts"):
+            osc.periodic(n)
     with pytest.raises(InputError, match=r"limit cycle of 1 impact, .* is not certified"):
         osc.periodic(1)[0].certified()
     with pytest.raises(InputError, match="f and g free of t"):
         osc.replace(g="cos(t) + cos(sqrt(2)*t)").periodic(1, 1)
+
+
+@pytest.mark.parametrize("force", ["x", "x + x**3", "sin(x)", "1"])
+def test_without_losses_a_continuum_is_named_and_no_orbit_is_listed(force):
+    for n in (1, 2):
+        cycles = si.ImpactOscillator(force, "0", "-0.3", 1).periodic(n)
+        assert len(cycles) == 0
+        assert "a continuum of orbits" in cycles.notes[0]
+    assert "a continuum" not in si.ImpactOscillator(force, "0", "-0.3", "0.999").periodic(1).notes[0]
 
 
 def test_a_constant_acceleration_at_the_wall_is_named(osc):
