@@ -144,12 +144,14 @@ def _of_few(osc: Oscillator, x: Any, xdot: Any, t: Any) -> Launched | None:
     ):
         return None
     model, (high, low) = _usual(osc)
-    heights = (x - high) - low
     try:
-        total = heights + xdot + t  # of their shape; not finite where one of them is not
+        if not 0 < np.broadcast(x, xdot, t).size <= FEW_STARTS:
+            return None
     except ValueError:
         return None
-    if not 0 < np.size(total) <= FEW_STARTS or not model.constant_restitution or not np.isfinite(total).all():
+    heights = (x - high) - low
+    total = heights + xdot + t  # of their shape; not finite where one of them is not
+    if not model.constant_restitution or not np.isfinite(total).all():
         return None
     if not np.min(heights) > 0 or not np.max(np.abs(t)) < model.nearest:
         return None

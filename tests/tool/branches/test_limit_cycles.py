@@ -67,6 +67,20 @@ def test_cycles_of_drawn_models_are_fixed_points_of_an_integrator(seed):
         assert (time, v) == (pytest.approx(cycle.period, abs=1e-8), pytest.approx(cycle.v[0], abs=1e-8))
 
 
+def test_the_multiplier_is_that_of_liouville(osc):
+    for wall in ("-1.5", "-0.4", "0.3"):
+        for cycle in osc.replace(clearance=wall).periodic(1):
+            way = solve_ivp(
+                lambda _t, y: [y[1], (1 - y[0] ** 2) * y[1] - y[0], 1 - y[0] ** 2],
+                (0, cycle.period),
+                [float(wall), float(cycle.v[0]), 0],
+                "DOP853",
+                rtol=1e-12,
+                atol=1e-13,
+            )
+            assert cycle.multipliers == pytest.approx([0.64 * np.exp(way.y[2, -1])], rel=1e-8)
+
+
 def test_a_linear_model_that_gains_energy_has_its_closed_form():
     # x'' - 2 b x' + x = 0, x >= -c: the flight that leaves with v returns with v/r, two equations in v and T
     b, c, r = 0.1, 1.0, 0.6

@@ -152,7 +152,7 @@ def test_the_short_flight_of_a_side_is_the_plain_one(name):
     random, short = np.random.default_rng(1), 0
     for tau, v in zip(random.uniform(0, 6, 60).tolist(), (10 ** random.uniform(-9, 0, 60)).tolist(), strict=True):
         code, a, time, u = kernels["plain_hit"](tau, 0.0, v, model, work)
-        known, there = kernels["linear_hit"](tau, 0.0, v, 0.0, model, work)
+        known, there = kernels["linear_hit"](tau, 0.0, v, 0.0, 0.0, model, work)
         assert (code, a) == (known, there)
         if code == 0:
             assert (time, u) == (work.hit[0], work.hit[1])
