@@ -77,6 +77,16 @@ class Dual:
     __radd__, __rmul__ = __add__, __mul__
 
 
+def total(one: Any, other: Any) -> Any:
+    """The sum; a series of python-flint 0.7 does not leave it to a `Dual` behind it."""
+    return other + one if isinstance(other, Dual) else one + other
+
+
+def product(one: Any, other: Any) -> Any:
+    """The product, as `total`."""
+    return other * one if isinstance(other, Dual) else one * other
+
+
 def reciprocal(number: Any) -> Any:
     if isinstance(number, Dual):
         value = reciprocal(number.value)
@@ -166,13 +176,13 @@ class Formula:
             case ast.UnaryOp(ast.USub(), part):
                 return self._at(part, values) * minus
             case ast.BinOp(left, ast.Add(), right):
-                return self._at(left, values) + self._at(right, values)
+                return total(self._at(left, values), self._at(right, values))
             case ast.BinOp(left, ast.Sub(), right):
-                return self._at(left, values) + self._at(right, values) * minus
+                return total(self._at(left, values), self._at(right, values) * minus)
             case ast.BinOp(left, ast.Mult(), right):
-                return self._at(left, values) * self._at(right, values)
+                return product(self._at(left, values), self._at(right, values))
             case ast.BinOp(left, ast.Div(), right):
-                return self._at(left, values) * reciprocal(self._at(right, values))
+                return product(self._at(left, values), reciprocal(self._at(right, values)))
             case ast.BinOp(base, ast.Pow(), exponent) if (value := self.exact(exponent)) is not None:
                 return power(self._at(base, values), value)
             case ast.Call(ast.Name(name), [part], []) if name in FUNCTIONS:
