@@ -100,7 +100,7 @@ class Branch(Result):
             for name, component in (("re", np.real), ("im", np.imag))
         }
         flags = {name: getattr(self, name).astype(int) for name in ("stable", "visible")}
-        cycles = {"period": self.period} if self.multipliers.shape[1] == 1 else {}  # of others the forcing has it
+        cycles = {"period": self.period} if self.oscillator.autonomous else {}  # of others the forcing has it
         return (
             {self.over: self.parameter}
             | cycles
@@ -112,7 +112,7 @@ class Branch(Result):
 
     def __repr__(self) -> str:
         low, high = (float(end) for end in (self.parameter.min(), self.parameter.max()))
-        cycles = f"limit cycles, n = {self.n}" if self.multipliers.shape[1] == 1 else f"({self.n}, {self.k}) orbits"
+        cycles = f"limit cycles, n = {self.n}" if self.oscillator.autonomous else f"({self.n}, {self.k}) orbits"
         lines = [f"<branch of {cycles}, {len(self)} points, {self.over} from {low:.6g} to {high:.6g}"]
         lines += [f"  {event!r}" for event in self.events]
         return "\n".join([*lines, *(f"  {note}" for note in self.notes)]) + ">"

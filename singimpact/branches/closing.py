@@ -150,7 +150,7 @@ class Closing:
 
     def _slopes_of_period(self, point: Array) -> Array:
         """Derivatives of the period of the forcing by the numbers of the family."""
-        return np.array(self.family.period(self.values(point)).slopes) if self.clocked else np.zeros(len(self.over))
+        return np.array(self.family.period(self.values(point)).slopes)
 
     def values(self, point: Array) -> dict[str, float]:
         """The free parameters."""

@@ -11,8 +11,8 @@ import numpy as np
 from singimpact.algebra.numbers import Array, as_float
 from singimpact.branches.closing import Closing, Flown
 from singimpact.flights.family import family
-from singimpact.flights.impact_map import impact_map
 from singimpact.flights.model_numbers import fastest_rate
+from singimpact.flights.orbits import iterates
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration_at
 from singimpact.status import Status
@@ -20,8 +20,9 @@ from singimpact.status import Status
 
 @dataclass(frozen=True)
 class CycleSettings:
-    """Velocities from which limit cycles are searched, over one that the model gives: |a_c|, or |c| and 1, by rates."""
+    """Settings of the search for limit cycles."""
 
+    # velocities of the grid, over |a_c| by the fastest rate; where a_c = 0, over that rate times |c| or 1
     low: float = 1e-4
     high: float = 1e3
     starts: int = 2000
@@ -58,6 +59,9 @@ class CycleClosing(Closing):
         """Whether a velocity is rounding."""
         return bool(np.abs(point[self.n : 2 * self.n]).min() < SETTINGS.graze * self.family.fastest)
 
+    def _slopes_of_period(self, point: Array) -> Array:  # noqa: ARG002
+        return np.zeros(len(self.over))
+
     def flights(self, point: Array) -> list[Flown]:
         """All flights; every launch is at time 0, because no flight depends on its time."""
         times = [*self.times(point).tolist(), float(point[0])]
@@ -79,7 +83,7 @@ def cycles_found(osc: Oscillator, n: int) -> tuple[list[Array], bool]:
     closing, rate = CycleClosing(family(osc), n, n), fastest_rate(osc)
     size = abs(acceleration_at(osc, 0.0)) / rate or rate * max(abs(as_float(osc.clearance)), 1.0)
     v = size * np.geomspace(SETTINGS.low, SETTINGS.high, SETTINGS.starts)
-    gain = _returned(osc, v, n)[1] - v
+    gain = _returned(osc, v, n) - v
     equal = np.abs(gain) <= SETTINGS.equal * v
     rounding = equal[:-1] & equal[1:]
     jump = np.flatnonzero(((gain[:-1] > 0) != (gain[1:] > 0)) & ~rounding)
@@ -87,29 +91,18 @@ def cycles_found(osc: Oscillator, n: int) -> tuple[list[Array], bool]:
     low, high, rises = v[jump], v[jump + 1], gain[jump] > 0
     for _ in range(SETTINGS.halvings):
         middle = (low + high) / 2
-        above = (_returned(osc, middle, n)[1] > middle) == rises
+        above = (_returned(osc, middle, n) > middle) == rises
         low, high = np.where(above, middle, low), np.where(above, high, middle)
+    ends = iterates(osc, np.zeros(low.size), (low + high) / 2, n, keep=True)
     points = []
-    for speed in ((low + high) / 2).tolist():
-        times, speeds = _orbit_of(osc, speed, n)
-        root = closing.newton(closing.point(times[:-1], speeds[:-1], float(times[-1]))) if times[-1] > 0 else None
+    for times, speeds in zip(ends.tau.T[ends.status == Status.hit], ends.v.T[ends.status == Status.hit], strict=True):
+        root = closing.newton(closing.point(times[:-1], speeds[:-1], float(times[-1])))
         if root is not None:
             points.append(root[0])
     return points, bool(rounding.any())
 
 
-def _returned(osc: Oscillator, v: Array, n: int) -> tuple[Array, Array]:
-    """Times and velocities after n impacts; nan where an impact does not come."""
-    tau = np.zeros(v.size)
-    for _ in range(n):
-        step = impact_map(osc, np.zeros(v.size), np.where(np.isfinite(v), v, 0.0))
-        good = (step.status == Status.hit) & np.isfinite(v)
-        tau, v = np.where(good, tau + step.flight_time, np.nan), np.where(good, step.v, np.nan)
-    return tau, v
-
-
-def _orbit_of(osc: Oscillator, v: float, n: int) -> tuple[Array, Array]:
-    """Times and velocities of n impacts after a first one at time 0."""
-    rows = [(0.0, v), *(tuple(float(part[0]) for part in _returned(osc, np.array([v]), k + 1)) for k in range(n))]
-    times, speeds = np.array(rows).T
-    return times, speeds
+def _returned(osc: Oscillator, v: Array, n: int) -> Array:
+    """Velocities after n impacts; nan where an impact does not come."""
+    ends = iterates(osc, np.zeros(v.size), v, n, keep=False)
+    return np.where(ends.status == Status.hit, ends.v, np.nan)

@@ -242,7 +242,7 @@ def returned(saddle: PeriodicOrbit, points: Array, backwards: bool = False) -> A
     """G^n of points, with the k periods taken off, or its inverse, shape (m, 2)."""
     for _ in range(int(saddle.n)):
         points = (before if backwards else model_step)(saddle.oscillator, points)
-    span = saddle.k * orbit_period(saddle)
+    span = saddle.period
     return np.asarray(points + np.array([span if backwards else -span, 0.0]))
 
 

@@ -110,8 +110,9 @@ def take_orbits(model: ImpactOscillator, orbit: tuple[int, int], start: tuple[st
     ------
     InputError : there is none.
     """
-    # a model without t has limit cycles, which count no periods
-    orbits = model.periodic(orbit[0]) if model.autonomous else model.periodic(*orbit, start=start)
+    n, k = orbit
+    # limit cycles count no periods: K = 1, which is the default of the option, is none
+    orbits = model.periodic(n, None if model.autonomous and k == 1 else k, start=start)
     if not orbits:
         more = f" ({'; '.join(orbits.notes)})" if orbits.notes else ""
         raise InputError(

@@ -167,3 +167,21 @@ def test_a_diagram_shows_the_stable_cycles(osc):
         span, v, ended = events[-1]
         assert ended == 0
         assert any(np.allclose([span, v], [cycle.period, cycle.v[0]], atol=1e-8) for cycle in stable)
+
+
+def test_the_exponents_of_a_cycle_are_0_and_that_of_its_multiplier(osc):
+    (cycle,) = osc.periodic(1)
+    first, second = si.lyapunov(osc, 0, 1.0, impacts=500).exponents
+    assert first == pytest.approx(0, abs=1e-12)
+    assert second == pytest.approx(np.log(cycle.multipliers[0]) / cycle.period, rel=1e-9)
+
+
+def test_the_command_follows_cycles_and_takes_no_start(singimpact, tmp_path):
+    file = tmp_path / "clockless.toml"
+    file.write_text('f = "x - (1 - x**2)*xdot"\ng = "0"\nclearance = "0.3"\nrestitution = "0.8"\n')
+    told = singimpact("branch", "--model", str(file), "--from", "0.1", "--to", "1")
+    assert "fold   0.6658118065" in told.output
+    for option in (("--start", "0", "1"), ("--orbit", "1", "2")):
+        refused = singimpact("branch", "--model", str(file), *option)
+        assert refused.exit_code == 2
+        assert "for a model in which t does not occur" in refused.output
