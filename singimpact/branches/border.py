@@ -24,7 +24,7 @@ from singimpact.dynamics.long_run import lift_offs
 from singimpact.dynamics.threshold import threshold
 from singimpact.flights.impact_map import checked_digits
 from singimpact.inputs import InputError, checked_keywords, refuse, whole
-from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.model import Oscillator, require_rebound
 from singimpact.oscillator.moving_number import RESTITUTION, value_of, with_number
 from singimpact.result import Result, Results
 from singimpact.status import Status
@@ -187,6 +187,7 @@ def border_orbits(
     """
     if not isinstance(osc, Oscillator):
         raise refuse("osc", osc, "an ImpactOscillator")
+    require_rebound(osc, "a border orbit, which ends on gamma,")
     osc = with_number(osc, over)
     if osc.period is None:
         raise refuse("model", osc, "one with a period: its released orbit returns to the same zeros of a_c")

@@ -20,7 +20,7 @@ NEEDED = ("omega", "clearance", "restitution")
 LINEAR = {
     "omega": "frequency of the forcing",
     "clearance": "position of the wall",
-    "restitution": "coefficient of restitution, in (0, 1]",
+    "restitution": "coefficient of restitution, from 0 to 1",
     "damping": "coefficient of x'",
     "stiffness": "coefficient of x",
     "amplitude": "amplitude of the forcing",

@@ -234,7 +234,7 @@ def nearby_orbits(model: Oscillator, tau: Array, v: Array, n: Array, k: Array, f
         moved = _newton(residual, slopes)
         aim = states[left] + moved
         there = np.abs((aim - starts[left]) / scale).max(axis=1, initial=0.0) < NEARBY.near
-        going = ~closed & there & (aim[:, 1] > 0)
+        going = ~closed & there & (aim[:, 1] >= 0)
         left = left[going]
         if not left.size:
             break
@@ -258,7 +258,7 @@ def _return(model: Oscillator, states: Array, n: Array, k: Array) -> tuple[Array
     at, speed = states.T.copy()
     slopes = np.broadcast_to(np.eye(2), (len(states), 2, 2)).copy()
     for count in range(int(n.max(initial=0))):
-        going = np.flatnonzero((n > count) & (speed > 0))
+        going = np.flatnonzero((n > count) & (speed >= 0))
         if going.size:
             slopes[going] = derivative(model, at[going], speed[going]).matrix @ slopes[going]
             ends = iterate(model, at[going], speed[going], 1)

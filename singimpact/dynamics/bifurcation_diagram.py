@@ -219,7 +219,7 @@ def _repeats(flown_orbit: Orbit) -> bool:
     for n in range(1, min(SETTINGS.period, tau.size // 2) + 1):
         last, before = slice(-n, None), slice(-2 * n, -n)
         if apart((tau[last], v[last]), (tau[before], v[before]), period, fast).max() < SETTINGS.close:
-            only_impacts = bool((flown_orbit.kind[shown][-2 * n :] == "impact").all())
+            only_impacts = bool((flown_orbit.kind[flown_orbit.tau >= tau[-2 * n]] == "impact").all())
             return not only_impacts or _is_periodic(flown_orbit, n, period, fast)
     return False
 

@@ -138,12 +138,34 @@ def chatter_limit(
             chatter_limit(osc, *states.given(index), digits=digits, impacts=impacts) for index in range(states.v.size)
         ]
         return gathered(ChatterLimit, limits, states.shape)  # type: ignore[no-any-return]
+    if osc.plastic:
+        return _one_impact(osc, tau, v, digits)
     rough = _in_doubles(osc, states, most)
     if digits is None or rough.status not in (Status.complete, Status.lifts_off):
         return rough
     if rough.status == Status.complete:
         require_smooth_rho(osc, "a chatter limit with digits=")
     return _enclosed(osc, states, checked_digits(digits)) or _precise(osc, states, rough, digits)
+
+
+def _one_impact(osc: Oscillator, tau: Any, v: Any, digits: int | None) -> ChatterLimit:
+    """The first impact, where impacts leave no velocity: the mass rests where a_c presses it there, else lifts off."""
+    step = impact_map(osc, tau, v, digits=digits)
+    landed, hit = step.tau, np.asarray(step.status) == Status.hit
+    status, end = np.array(step.status), np.array(landed, dtype=float if digits is None else object)
+    stays = np.asarray(impact_map(osc, end[hit], 0.0, digits=digits).status) == Status.sticks
+    status[hit], end[~hit] = np.where(stays, Status.complete, Status.lifts_off), np.nan
+    if digits is None:
+        error = np.where(hit, step.time_error * step.flight_time, np.nan) + EPSILON * np.abs(end)
+        return ChatterLimit(end[()], hit.astype(np.int64)[()], error[()], status_array(status), cause=step.cause)
+    if not hit:
+        return ChatterLimit(np.nan, 0, np.nan, status_array(status), cause=step.cause)
+    proved = step.certified.tau if step.certified is not None else None
+    with digits_at(digits) as mp:
+        error = _covering(proved) if proved is not None else abs(landed) * mp.mpf(10) ** -digits
+    launch = States.of(osc, tau, v, digits)
+    exact = launch.exact_tau(0), launch.exact_v(0)
+    return ChatterLimit(landed, 1, for_user(error), status_array(status), proved, 0, osc if proved else None, exact)
 
 
 def _in_doubles(osc: Oscillator, states: States, most: int) -> ChatterLimit:

@@ -80,15 +80,15 @@ def futures(model: Oscillator, phases: tuple[float, ...], classify: Callable[[Ar
     return rows
 
 
-def _rest_of(model: Oscillator, lifted: float) -> float:
+def _rest_of(model: Oscillator, start: float) -> float:
     """The second lift-off of a mass whose chatter completes after the first; nan where none is seen to complete."""
     flown = 1
     while flown <= SETTINGS.flown:  # most chatters complete at once, others after long transients
         flown *= 16
-        found = orbit(model, lifted, 0, impacts=flown)
-        rests = found.tau[found.kind == "complete"]
-        if rests.size:
-            return release(model, float(rests[0]))
+        found = orbit(model, start, 0, impacts=flown)
+        lifted = found.tau[found.kind == "release"]
+        if lifted.size:
+            return float(lifted[0])
     return np.nan
 
 

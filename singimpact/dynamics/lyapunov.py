@@ -20,7 +20,7 @@ from singimpact.dynamics.remaining import chatter_completes
 from singimpact.flights.compiled_model import compiled_model
 from singimpact.flights.derivative import derivative, log_determinant
 from singimpact.flights.impact_map import impact_map
-from singimpact.flights.orbits import Segment, orbit_segment
+from singimpact.flights.orbits import Ends, Segment, iterates, orbit_segment
 from singimpact.flights.rebound_law import rebound_slope
 from singimpact.flights.states import States
 from singimpact.inputs import InputError, checked_keywords, refuse, shown, whole
@@ -224,16 +224,25 @@ class _Run:
 
     def _repeats(self) -> bool:
         """Whether the state comes back after some impacts."""
-        if not self.v > 0 or not self.before or self.osc.period is None:
+        plastic = self.osc.plastic
+        if not (self.v > 0 or plastic) or not self.before or self.osc.period is None:
             return False
-        ahead = orbit_segment(self.osc, self.tau, self.v, SETTINGS.period)
-        away = apart((ahead.tau, ahead.v), (self.tau, self.v), as_float(self.osc.period), self.v)
+        ahead: Ends | Segment
+        if plastic:
+            ahead = iterates(self.osc, self.tau, self.v, SETTINGS.period, True)
+        else:
+            ahead = orbit_segment(self.osc, self.tau, self.v, SETTINGS.period)
+        last = slice(-SETTINGS.period, None)
+        away = apart((ahead.tau[last], ahead.v[last]), (self.tau, self.v), as_float(self.osc.period), self.v or 1.0)
         return bool((away < SETTINGS.close).any())
 
     def fly(self, most: int, keep: bool) -> None:
         """So many impacts, fewer where the orbit ends or is seen to come to rest again and again."""
         done, near, block = 0, self.near, SETTINGS.block
         while done < most and self.status == Status.hit:
+            if self.osc.plastic:
+                done += self._landed(min(most - done, SETTINGS.look), keep)
+                continue
             if not self.v > 0:
                 done += self._mapped(keep)
                 continue
@@ -262,6 +271,26 @@ class _Run:
         shrunk = log_determinant(self.osc, *launches, segment.flight_time, segment.velocity)
         self.sums.add(_matrices(self.osc, segment, *launches), segment.flight_time, shrunk)
         self.flown += count
+        return count
+
+    def _landed(self, most: int, keep: bool) -> int:
+        """Impacts that leave no velocity, up to one after which the mass rests."""
+        tau, v = self.given if self.first else (self.tau, self.v)
+        rows = iterates(self.osc, tau, v, most, True)
+        count = int(np.count_nonzero(np.diff(rows.tau)))
+        launches, self.first = (rows.tau[:count], rows.v[:count]), False
+        self.tau, self.v = float(rows.tau[count]), float(rows.v[count])
+        if keep and count:
+            self.sums.add(
+                derivative(self.osc, *launches).matrix, np.diff(rows.tau[: count + 1]), np.full(count, -np.inf)
+            )
+            self.flown += count
+        if rows.status == Status.sticks:
+            self._rest(self.tau)
+            if self.status == Status.hit:  # the impacts after a lift-off do not depend on the orbit before
+                self.begin()
+        elif rows.status:
+            self.status = Status(int(rows.status))
         return count
 
     def _mapped(self, keep: bool) -> int:
@@ -354,7 +383,9 @@ def _exponents(rows: Array, time: float) -> tuple[Array, Array]:
     error = np.full(2, np.nan)
     if groups > 1:
         # of a ratio of sums: what the growth of a group differs by from its time at the mean rate
-        off = growth - np.outer(parts[:, 1], exponents)
+        with np.errstate(invalid="ignore"):  # where impacts leave no velocity all of a column is -inf
+            off = growth - np.outer(parts[:, 1], exponents)
         error = np.sqrt((off**2).sum(axis=0) * groups / (groups - 1)) / time
+        error[np.isneginf(exponents)] = 0.0
     order = np.argsort(-exponents, kind="stable")
     return exponents[order], error[order]

@@ -154,7 +154,7 @@ class _Run:
     def _first_stage(self) -> None:
         """The number of impacts in which a plain chatter becomes slow, with searches at doubling distances."""
         r = as_float(self.study.model.slope_at_rest())
-        slowest = ceil(log(SETTINGS.rest) / log(r)) if r < 1 else 0
+        slowest = ceil(log(SETTINGS.rest) / log(r)) if 0 < r < 1 else 0
         most = min(SETTINGS.transient + slowest, SETTINGS.limit, self.study.impacts)
         block = SETTINGS.block
         while self.open.size and self.count < most:
@@ -216,7 +216,7 @@ class _Run:
             rows[ends.status == status, 0] = code
         rows[rests, 0] = CHATTER
         rows[rests, 1] = next_lift_off(study.phases, _at_rest(study, self.tau[at[rests]], self.v[at[rests]]))
-        self._decide(rests | (ends.status != 0) | ~np.isfinite(ends.tau) | ~(ends.v > 0), rows)
+        self._decide(rests | (ends.status != 0) | ~np.isfinite(ends.tau) | ~(ends.v >= 0), rows)
 
     def _catch(self) -> bool:
         """Whether some open states are near a known attractor, or one that a sample of them has reached."""

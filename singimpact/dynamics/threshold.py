@@ -23,7 +23,7 @@ from singimpact.flights.kernels.gamma import TERMS_OF_GAMMA
 from singimpact.flights.orbits import orbit_segment
 from singimpact.flights.states import require_room
 from singimpact.inputs import InputError, checked_keywords, whole
-from singimpact.oscillator.model import Oscillator, require_smooth_rho
+from singimpact.oscillator.model import Oscillator, require_rebound, require_smooth_rho
 from singimpact.oscillator.wall_acceleration import acceleration, sign_of_acceleration
 from singimpact.result import Result, in_words
 from singimpact.status import Status
@@ -115,6 +115,7 @@ def threshold(osc: Oscillator, tau: Any, *, digits: int | None = None, impacts: 
         require_room(("tau", tau))
         thresholds = [threshold(osc, one, digits=digits, impacts=impacts) for one in np.asarray(tau).ravel().tolist()]
         return gathered(Threshold, thresholds, np.shape(tau))  # type: ignore[no-any-return]
+    require_rebound(osc, "a threshold between complete and incomplete chatter")
     phase, most = constant("tau", tau), whole("impacts", impacts, 1, 10**7)
     if sign_of_acceleration(osc, phase) >= 0:
         raise InputError(

@@ -81,7 +81,7 @@ def enclosed_impact(
         return _without(names, Status.no_return, f"proved: {none}")
     except (Refused, ArithmeticError, ValueError) as reason:
         return _without(names, Status.unresolved, str(reason) or type(reason).__name__)
-    if not proof.v > 0:
+    if not (proof.v > 0 or (osc.plastic and RESTITUTION not in widths and proof.velocity < 0)):
         return _without(names, Status.unresolved, "the velocity after the impact is not shown positive")
     numbers = [from_ball(entry, wanted) for entry in proof[:4]]
     rows = tuple(tuple(from_ball(entry, wanted) for entry in row) for row in proof.derivative)

@@ -207,7 +207,7 @@ def step(osc: Oscillator, states: States, hit: Flight, digits: int) -> Step:
             else:
                 landed = as_mpf(states.exact_tau(index), mp) + time
                 bounce = rebound_in_digits(osc, mp.convert(speed), mp)
-            if status[index] == Status.hit and not bounce > 0:
+            if status[index] == Status.hit and not (bounce > 0 or osc.plastic):
                 status[index], bounce = Status.no_rebound, mp.nan
             tau[index], v[index] = for_user(landed), for_user(bounce)
     shape = states.shape
@@ -278,7 +278,7 @@ def _expected(rough: tuple[float, float] | None) -> tuple[float, float]:
 
 def _certified(hit: ProvedImpact, digits: int, osc: Oscillator, launch: tuple[Expression, Expression]) -> Proof:
     """The proof of a hit, with the model and the launch, which a certificate names."""
-    if not hit.v > 0:
+    if not (hit.v > 0 or (osc.plastic and hit.velocity < 0)):
         return Proof(hit.flight_time, hit.velocity, None, "the velocity after the impact is not shown positive")
     time, velocity, tau, v = (from_ball(ball, digits) for ball in (hit.flight_time, hit.velocity, hit.tau, hit.v))
     return Proof(hit.flight_time, hit.velocity, CertifiedImpact(time, velocity, tau, v, osc, launch))

@@ -15,7 +15,7 @@ from singimpact.flights.rebound_law import sharpened, speed_before
 from singimpact.flights.results import Step
 from singimpact.flights.states import States
 from singimpact.flights.undecided import in_shape
-from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.model import Oscillator, require_rebound
 from singimpact.status import Status, status_array
 
 KEPT = ("flight_time", "depth", "bound", "condition", "velocity_condition", "time_error", "velocity_error", "cause")
@@ -48,6 +48,7 @@ def inverse_map(osc: Oscillator, tau: Any, v: Any, *, digits: int | None = None,
     >>> before.tau, before.v, before.status
     (np.float64(1.0), np.float64(3.0), np.int8(0))
     """
+    require_rebound(osc, "the inverse of the impact map")
     if many(tau, v, digits=digits):
         return in_blocks(partial(inverse_map, osc, horizon=horizon), tau, v)  # type: ignore[no-any-return]
     if type(tau) is float and type(v) is float and digits is horizon is None and not names_in(osc.restitution):

@@ -11,6 +11,7 @@ from singimpact.flights.blocks import LEAST, in_blocks, many
 from singimpact.flights.causes import decoded
 from singimpact.flights.compiled_model import allowed, compiled_model
 from singimpact.flights.flat_numbers import EPSILON
+from singimpact.flights.impact_map import impact_map
 from singimpact.flights.kernels.hits import AT_REST, PRESSED
 from singimpact.flights.states import States
 from singimpact.inputs import require_memory
@@ -113,6 +114,10 @@ def iterate(osc: Oscillator, tau: Any, v: Any, impacts: int, tolerance: float = 
         return in_blocks(partial(iterate, osc, impacts=impacts, tolerance=tolerance), tau, v)  # type: ignore[no-any-return]
     states = States.read(tau, v).in_period(osc)
     model = compiled_model(osc)
+    if osc.plastic:
+        times, speeds, codes = _from_rest(osc, states, impacts, tolerance)
+        parts = times + states.turns, speeds, codes
+        return Ends(*(column.reshape(states.shape)[()] for column in parts))
     if tolerance > EPSILON and not model.linear:
         model = allowed(osc, replace(model.allowance, epsilon=tolerance))
     times, speeds, codes = model.iterate(states.tau, states.v, impacts)
@@ -124,6 +129,24 @@ def iterate(osc: Oscillator, tau: Any, v: Any, impacts: int, tolerance: float = 
     codes[over], speeds[over] = Status.complete, 0.0
     parts = times + states.turns, speeds, decoded(codes)[0]
     return Ends(*(column.reshape(states.shape)[()] for column in parts))
+
+
+def _from_rest(osc: Oscillator, states: States, impacts: int, tolerance: float) -> tuple[Array, Array, Array]:
+    """The last states and statuses where impacts leave no velocity: from the first one on the mass starts at rest.
+
+    An orbit ends, as `sticks`, where a_c presses the mass to the wall after an impact.
+    """
+    times, speeds, codes = states.tau.copy(), states.v.copy(), np.zeros(states.v.size, np.int8)
+    going = np.arange(times.size)
+    for _ in range(impacts):
+        step = impact_map(osc, times[going], speeds[going], tolerance=tolerance)
+        ended = step.status != Status.hit
+        codes[going[ended]] = step.status[ended]
+        going = going[~ended]
+        if not going.size:
+            break
+        times[going], speeds[going] = step.tau[~ended], 0.0
+    return times, speeds, codes
 
 
 def _completed(osc: Oscillator, tau: Array, v: Array, codes: Array) -> Array:

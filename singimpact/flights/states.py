@@ -26,7 +26,7 @@ from singimpact.flights.limits import LIMITS
 from singimpact.inputs import InputError, refuse, require_memory
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.phase import phase_of
-from singimpact.oscillator.wall_acceleration import Zero, sign_of_acceleration, zero_beside
+from singimpact.oscillator.wall_acceleration import Zero, acceleration, sign_of_acceleration, zero_beside
 
 FAR = 2.0**25
 """Periods from which on launch times are reduced exactly: kernels reduce those before, to twice a double's bits."""
@@ -72,8 +72,8 @@ class States:
         if states.v.all():
             return states
         resting = np.flatnonzero(states.v == 0)
-        rest = {}
-        for index in resting.tolist():
+        rest = _clear(osc, states, resting)
+        for index in [index for index in resting.tolist() if index not in rest]:
             moving = sign_of(states.exact_v(index)) > 0  # less than the smallest double
             zero = None if moving else _zero_beside(osc, states.written[0][index], digits)
             tau = states.exact_tau(index)
@@ -193,6 +193,23 @@ def _plain(values: Any) -> bool:
 
 def _doubles(values: Any) -> bool:
     return type(values) is np.ndarray and values.dtype == np.float64
+
+
+def _clear(osc: Oscillator, states: States, resting: np.ndarray[Any, Any]) -> dict[int, Zero]:
+    """Of doubles at rest those where a_c changes by less than half within 8 ulps: no zero is near, its sign decides."""
+    times, speeds = states.written
+    if times.dtype != float or speeds.dtype.kind not in "fiu":
+        return {}
+    tau = states.tau[resting]
+    with np.errstate(all="ignore"):
+        here, before, after = (acceleration(osc, tau + 8 * step * np.spacing(tau)) for step in (0, -1, 1))
+        clear = (np.abs(before - here) < np.abs(here) / 2) & (np.abs(after - here) < np.abs(here) / 2)
+    signs = np.sign(here).astype(int).tolist()
+    return {
+        index: Zero(states.exact_tau(index), 0, sign)
+        for index, sign, plain in zip(resting.tolist(), signs, clear.tolist(), strict=True)
+        if plain
+    }
 
 
 def _zero_beside(osc: Oscillator, written: Any, digits: int | None) -> Zero | None:

@@ -32,7 +32,7 @@ class Oscillator:
         occurs is one with moving coefficients, "(1 + cos(2*t)/5)*x".
     g : expression in t and the parameters.
     clearance : number, the obstacle's place; finite.
-    restitution : number r in (0, 1], for v -> -r v; or an expression rho in the velocity v before the impact and the
+    restitution : number r in [0, 1], for v -> -r v; or an expression rho in the velocity v before the impact and the
         parameters, with rho(0) = 0 and rho'(0) in [-1, 0), for v -> rho(v). Powers such as (-v)**(6/5) are allowed.
     parameters : name -> number.
     period : number, optional; a common period of f and g in t. Computed where t enters through sines and cosines of
@@ -149,6 +149,17 @@ class Oscillator:
         found = None if not names_in(self.restitution) else self.rho_at_rest()
         return found is None or found.whole
 
+    @property
+    def plastic(self) -> bool:
+        """Whether the restitution is the number 0: impacts leave no velocity.
+
+        Examples
+        --------
+        >>> [Oscillator("x", "cos(t)", 0, r).plastic for r in (0, "0.5", "-v/2 + v**2")]
+        [True, False, False]
+        """
+        return rebound.is_zero(self.restitution)
+
     def replace(self, **changes: Any) -> Self:
         """A model with some fields changed; a parameter is changed by its own name.
 
@@ -230,14 +241,21 @@ def require_smooth_text(tree: Expression, what: str) -> None:
 
 
 def require_smooth_rho(osc: Oscillator, what: str) -> None:
-    """Refuse a restitution that is not smooth at rest where a task needs its Taylor series there.
+    """Refuse a restitution that is 0, or not smooth at rest, where a task needs its Taylor series there.
 
     Parameters
     ----------
     what : the task, as the subject of a sentence.
     """
+    require_rebound(osc, what)
     if not osc.smooth_at_rest:
         raise not_smooth(osc, what)
+
+
+def require_rebound(osc: Oscillator, what: str) -> None:
+    """Refuse the restitution 0 where a task needs velocities after impacts; `what` is as in `require_smooth_rho`."""
+    if osc.plastic:
+        raise InputError(f"restitution = 0 is not accepted here: {what} needs impacts that rebound, give a number > 0")
 
 
 def not_smooth(osc: Oscillator, what: str) -> InputError:

@@ -10,8 +10,9 @@ from singimpact.algebra.numbers import compare, constant, tree_of
 from singimpact.algebra.puiseux import Puiseux, expansion
 from singimpact.inputs import InputError, refuse
 
-ACCEPTED = "a number in (0, 1], or an expression rho in v with rho(0) = 0 and -1 <= rho'(0) < 0, such as -0.8*v + v**2"
-PLASTIC = "; with 0 the mass stays on the wall after each impact, and osc.release(tau) of any r says when it lifts off"
+ACCEPTED = (
+    "a number from 0 to 1, or an expression rho in v with rho(0) = 0 and -1 <= rho'(0) < 0, such as -0.8*v + v**2"
+)
 # terms of the expansion of rho at rest: more where the first ones cancel, fewer where their coefficients become long
 TERMS = (6, 24, 2)
 
@@ -32,10 +33,16 @@ def read(value: Any, parameters: dict[str, Expression]) -> Expression:
         if callable(value) or (isinstance(value, str) and "v" in value):
             raise
         raise refuse("restitution", value, ACCEPTED) from error
-    good = _good(substitute(tree, parameters)) if "v" in names_in(tree) else compare(tree, 0) > 0 >= compare(tree, 1)
+    good = _good(substitute(tree, parameters)) if "v" in names_in(tree) else compare(tree, 0) >= 0 >= compare(tree, 1)
     if not good:
-        raise refuse("restitution", value, ACCEPTED + PLASTIC * (str(tree) == "0"))
+        raise refuse("restitution", value, ACCEPTED)
     return tree
+
+
+@lru_cache(maxsize=256)
+def is_zero(restitution: Expression) -> bool:
+    """Whether a restitution is the number 0."""
+    return not names_in(restitution) and compare(restitution, 0) == 0
 
 
 def rho_of(restitution: Expression) -> Expression:

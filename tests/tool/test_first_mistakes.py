@@ -23,7 +23,7 @@ OSC = si.linear(2, "0.3", "0.5")
         (lambda: OSC.orbit(), "an orbit starts from tau and v, or off the wall from x=, xdot= and t="),
         (lambda: OSC.orbit("90deg", "0.1"), "angles are in radians: write 90*pi/180"),
         (lambda: si.linear(2, 0, "0.5", phase="30 degrees"), "angles are in radians: write 30*pi/180"),
-        (lambda: si.linear(2, 0, 0), "restitution = 0 is not accepted: give a number in (0, 1]"),
+        (lambda: si.linear(2, 0, -1), "restitution = -1 is not accepted: give a number from 0 to 1"),
         (lambda: si.claims["eq 5"], "claims have ids, not numbers: about equation (5) of the paper there is e:acc"),
         (lambda: si.claims["(4)"], "about equation (4) of the paper there is none"),
         (lambda: si.claims["e:mec"], "the nearest known are e:meq"),

@@ -25,7 +25,7 @@ REFUSED = {
     ("map", *STATE, *LINEAR, "--model", "a.toml"): "name two models",
     ("map", *STATE, "--model", "absent.toml"): "'absent.toml' cannot be read",
     ("map", *LINEAR, *STATE, "--tau", "1", "--tau", "2", "--v", "1"): "3 --tau and 2 --v do not pair",
-    ("map", *LINEAR[:-1], "1.5", *STATE): "restitution = '1.5' is not accepted: give a number in (0, 1]",
+    ("map", *LINEAR[:-1], "1.5", *STATE): "restitution = '1.5' is not accepted: give a number from 0 to 1",
     ("map", *LINEAR[:-1], "abc", *STATE): "restitution = 'abc'",
     ("map", *LINEAR[:-1], "__import__('os')", *STATE): "restitution",
     ("map", *LINEAR, "--tau", "nan", "--v", "1"): "tau = 'nan'",

@@ -65,7 +65,6 @@ def test_period_is_found_or_not_claimed(g, period):
 REFUSED = [
     ({"clearance": float("nan")}, "clearance = nan"),
     ({"clearance": "abc"}, "clearance = 'abc'"),
-    ({"restitution": 0}, "restitution = 0"),
     ({"restitution": 1.5}, "restitution = 1.5"),
     ({"restitution": -0.5}, "restitution = -0.5"),
     ({"restitution": "abc"}, "restitution = 'abc'"),
