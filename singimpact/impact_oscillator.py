@@ -44,7 +44,7 @@ class ImpactOscillator(Oscillator):
 
     # studies of the model as a whole, each documented as a function of `singimpact`
     basins, bifurcation, lyapunov, threshold = Study(), Study(), Study(), Study()
-    tangency_points, classify, grown_gamma = Study(), Study(), Study()
+    tangency_points, classify, grown_gamma, release_map = Study(), Study(), Study(), Study()
     border_orbits, transitions, explore, selftest = Study(), Study(), Study(), Study()
 
     def first_hit(

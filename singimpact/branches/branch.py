@@ -244,16 +244,18 @@ def interval(over: str, between: Any, value: float) -> tuple[float, float]:
     >>> interval("clearance", None, 0.0), interval("restitution", None, 0.8), interval("w", ("1/2", 2), 1.0)
     ((-0.5, 0.5), (0.4, 1.0), (0.5, 2.0))
     """
+    if over == RESTITUTION and not value:
+        raise InputError("restitution = 0 is not accepted here: a branch over it needs an orbit that rebounds")
     if between is None:
         reach = SETTINGS.around * (abs(value) or 1.0)
         low, high = value - reach, value + reach
-        return (max(low, 0.0), min(high, 1.0)) if over == RESTITUTION else (low, high)
+        return (low, min(high, 1.0)) if over == RESTITUTION else (low, high)
     try:
         low, high = (as_float(constant("between", end)) for end in between)
     except (TypeError, ValueError):
         raise refuse("between", between, "two numbers low < high") from None
-    if not low < high or (over == RESTITUTION and not 0 <= low < high <= 1):
-        raise refuse("between", between, "two numbers low < high" + (" in [0, 1]" if over == RESTITUTION else ""))
+    if not low < high or (over == RESTITUTION and not 0 < low < high <= 1):
+        raise refuse("between", between, "two numbers low < high" + (" in (0, 1]" if over == RESTITUTION else ""))
     if not low <= value <= high:
         raise refuse("between", between, f"an interval that holds {over} = {value:.12g} of the orbit")
     return low, high

@@ -154,6 +154,8 @@ class BranchWalk(OrbitCurve):
         n = self.closing.n
         if n and float(at[n : 2 * n].min()) < -rounding:
             return False
+        if self.closing.plastic and self.closing.pushes(at).min() < -rounding:  # the mass rests there
+            return False
         return min(self.tests.heights(at)) >= -rounding
 
     # ---- events within a step
@@ -242,7 +244,11 @@ class BranchWalk(OrbitCurve):
     def _launched(self, point: Point) -> bool:
         """Whether every flight begins with a velocity: flights of orbits with v <= 0 start behind the wall."""
         n = self.closing.n
-        return not n or float(point.at[n : 2 * n].min()) > 1e-9 * float(self.closing.scales(point.at)[n])
+        return (
+            not n
+            or self.closing.plastic
+            or float(point.at[n : 2 * n].min()) > 1e-9 * float(self.closing.scales(point.at)[n])
+        )
 
     def _event_row(
         self, kind: EventKind, point: Point, impact: int = 0, time: float = np.nan, other: PeriodicOrbit | None = None

@@ -18,7 +18,7 @@ from singimpact.algebra.numbers import Array
 from singimpact.branches.continuation import cubic_between
 from singimpact.flights.derivative import log_determinant
 from singimpact.flights.family import Family
-from singimpact.oscillator.moving_number import CLEARANCE
+from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION
 
 NEAR = 0.1
 """A minimum of x - c is refined when it is below this part of the largest height."""
@@ -110,7 +110,7 @@ class Loop:
         second = 2 * zero / far if far else first
         if product is not None and abs(zero) < CANCELLED * size:
             determinant = product()
-            second = determinant / first if np.isfinite(determinant) and abs(first) > 0 else second
+            second = determinant / first + 0.0 if np.isfinite(determinant) and abs(first) > 0 else second
         return np.array([first, second])
 
 
@@ -131,6 +131,11 @@ class Closing:
     def over(self) -> tuple[str, ...]:
         """Names of the free parameters."""
         return self.family.over
+
+    @property
+    def plastic(self) -> bool:
+        """Whether the restitution is 0 along the family."""
+        return self.family.osc.plastic and RESTITUTION not in self.over
 
     def times(self, point: Array) -> Array:
         """The times of the impacts."""
@@ -196,6 +201,8 @@ class Closing:
         """The product of the multipliers, det D G over all impacts; nan at a graze."""
         launches, _, speeds, times = np.array(self.flights(point)).T
         values = self.values(point)
+        if self.plastic:
+            return 0.0
         ends = [
             self.family.end(values, tau, v, time).place[1] for tau, v, time in zip(launches, speeds, times, strict=True)
         ]
@@ -266,6 +273,11 @@ class Closing:
     def span(self, point: Array, flight: int) -> float:
         """The time of a flight."""
         return self.flights(point)[flight][3]
+
+    def pushes(self, point: Array) -> Array:
+        """a_c at each impact."""
+        values = self.values(point)
+        return np.array([self.family.end(values, tau, 0.0, 0.0).by_time[1] for tau, *_ in self.flights(point)])
 
 
 def _height(turn: Turn) -> float:
@@ -362,6 +374,7 @@ class FreeClosing:
     n: int = 0
 
     clocked: ClassVar[bool] = True
+    plastic: ClassVar[bool] = False
 
     def times(self, point: Array) -> Array:
         """The times of the impacts: none."""
@@ -416,6 +429,10 @@ class FreeClosing:
         wall = moved.get(CLEARANCE, 0.0)
         rates = [float(direction[0]) if name == CLEARANCE else moved.get(name, 0.0) for name in self.family.over]
         return float(np.dot(rates, end.by_numbers[:, 0]) + end.by_v[0] * direction[1] + direction[0] - wall)
+
+    def pushes(self, point: Array) -> Array:
+        """None of an orbit without impact."""
+        return point[:0]
 
     def span(self, point: Array, flight: int = 0) -> float:  # noqa: ARG002
         """The time of k periods."""

@@ -109,7 +109,7 @@ def event_curve(
     points: int = 1000,
     step: float | None = None,
 ) -> EventCurve:
-    """The curve of a fold, doubling, graze or hidden impact in two parameters.
+    """The curve of a fold, doubling, graze, hidden impact or onset of rest in two parameters.
 
     Parameters
     ----------

@@ -91,6 +91,8 @@ def periodic(
     if osc.period is None:
         raise InputError("the forcing has no period: a periodic orbit needs one, or f and g free of t")
     k, window = _count("k", k, 1), None if v is None else _window(v)
+    if osc.plastic and v is not None:
+        raise refuse("v", v, "no v with restitution = 0: all velocities after impacts are 0")
     if n == np.inf:
         return chatter_orbits(osc, k)
     n = _count("n", n, 0)
@@ -145,7 +147,7 @@ def _all(osc: Oscillator, n: int, k: int) -> tuple[list[Array], tuple[str, ...] 
         )
     closing = Closing(family(osc), n, k)
     points = closed_from(closing, grid_of_starts(closing))
-    return points, None if n == 2 and linear else (SEARCHED,)
+    return points, None if n == 2 and linear and not osc.plastic else (SEARCHED,)
 
 
 def _limit_cycles(osc: Oscillator, n: Any, others: tuple[Any, ...]) -> PeriodicOrbits:
@@ -234,7 +236,7 @@ def _judged(osc: Oscillator, n: int, k: int, points: list[Array]) -> list[Period
     assert isinstance(closing, Closing)
     distinct: list[PeriodicOrbit] = []
     for point in points:
-        if not point[n : 2 * n].max() > SETTINGS.least or point[n : 2 * n].min() < -SETTINGS.least:
+        if not (osc.plastic or point[n : 2 * n].max() > SETTINGS.least) or point[n : 2 * n].min() < -SETTINGS.least:
             continue
         orbit = orbit_at(closing, point, osc)
         if not _sooner(orbit, closing) and not any(same_states(orbit, other, SETTINGS.apart) for other in distinct):
@@ -282,7 +284,7 @@ def in_digits(osc: Oscillator, rough: PeriodicOrbit, digits: int) -> PeriodicOrb
             multipliers = [mp.convert(complex(multiplier)) for multiplier in rough.multipliers]
         else:
             root = mp.sqrt(mp.mpc(mp.convert(half * half - product)))
-            multipliers = [half + root, half - root]
+            multipliers = sorted([half + root, half - root], key=abs, reverse=True)
         numbers = [mp.convert(state) for state in states]
         missed = mp.convert(miss)
     with digits_at(digits):

@@ -148,7 +148,8 @@ def phases_and_speeds(osc: Oscillator, k: int) -> tuple[Array, Array] | None:
     period, r = as_float(osc.period), as_float(osc.restitution)
     time = k * period
     flow = flights.flow({}, time)[:2]
-    by_v = np.array([flow[0, 1], flow[1, 1] + 1 / r])
+    factor, share = (1.0, 1 / r) if r else (0.0, 1.0)  # the second equation times r: v = 0 for r = 0
+    by_v = np.array([flow[0, 1], factor * flow[1, 1] + share])
     waves = linear_waves(osc)
     degrees = [round(abs(as_float(wave.rate)) * period / (2 * np.pi)) for wave in waves]
     size = max(degrees, default=0)
@@ -160,6 +161,7 @@ def phases_and_speeds(osc: Oscillator, k: int) -> tuple[Array, Array] | None:
         turned = (flow[:, 3 + 2 * j] - 1j * flow[:, 4 + 2 * j]) / 2 * np.exp(1j * as_float(wave.phase))
         series[:, size + sign * degree] += turned
         series[:, size - sign * degree] += np.conj(turned)
+    series[1] *= factor
     total = series[1] * by_v[0] - series[0] * by_v[1]
     scale = np.abs(series).max() * np.abs(by_v).max()
     if np.abs(total).max() <= 1e-13 * scale:
@@ -168,8 +170,8 @@ def phases_and_speeds(osc: Oscillator, k: int) -> tuple[Array, Array] | None:
     tau = np.mod(angles, 2 * np.pi) * period / (2 * np.pi)
     powers = np.exp(1j * np.outer(angles, np.arange(-size, size + 1)))
     parts = (powers @ series.T).real
-    row = int(np.argmax(np.abs(by_v)))
-    return tau, -parts[:, row] / by_v[row]
+    row = int(np.argmax(np.abs(by_v))) if r else 1
+    return tau, -parts[:, row] / by_v[row] + 0.0
 
 
 def _near(total: Array) -> Array:
@@ -249,14 +251,16 @@ def grid_of_starts(closing: Closing, tau: Any = None, v: Any = None) -> Array:
     if tau is None:
         linear = isinstance(closing.family, LinearFamily)
         count, speed_count = (SETTINGS.phases, SETTINGS.speeds) if linear else SETTINGS.fewer
+        if osc.plastic:
+            count, speed_count = count * speed_count, 0
         phases = np.linspace(0, period, count, endpoint=False)
         fast = float(np.abs(acceleration(osc, phases)).max()) * span / n
-        speeds = fast * np.concatenate([SETTINGS.weak, np.geomspace(1e-3, 1, speed_count)])
+        speeds = fast * np.concatenate([SETTINGS.weak, np.geomspace(1e-3, 1, speed_count)]) if speed_count else 0.0
         tau, v = (coordinates.ravel() for coordinates in np.meshgrid(phases, speeds))
     else:
         tau, v = np.asarray(tau, dtype=float), np.asarray(v, dtype=float)
     points = np.stack([tau, v], axis=1) if n == 1 else _flown(osc, tau, v, n, span)
-    return np.concatenate([points, _grazes(closing)]) if n < 9 else points
+    return np.concatenate([points, _grazes(closing)]) if n < 9 and not osc.plastic else points
 
 
 def _flown(osc: Oscillator, tau: Array, v: Array, n: int, span: float) -> Array:
@@ -307,7 +311,8 @@ def conditions(closing: Closing, points: Array) -> tuple[Array, Array]:
         factor = rebound_slope(osc, speed)
         miss = np.empty((m, 2 * n))
         miss[:, ::2] = position.reshape(m, n)
-        miss[:, 1::2] = evaluate(osc.rho(), {"v": speed}, DOUBLES).reshape(m, n) - np.roll(points[:, n:], -1, axis=1)
+        after = evaluate(osc.rho(), {"v": speed}, DOUBLES) + 0 * speed
+        miss[:, 1::2] = after.reshape(m, n) - np.roll(points[:, n:], -1, axis=1)
     slope = np.zeros((m, 2 * n, 2 * n))
     parts = [
         block.reshape(m, n)

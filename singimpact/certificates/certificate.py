@@ -31,7 +31,7 @@ from singimpact.dynamics.chatter import ChatterLimit
 from singimpact.dynamics.gamma_proof.proof import CertifiedGamma
 from singimpact.flights.results import CertifiedImpact, Flight
 from singimpact.inputs import InputError, checked_keywords, refuse, whole
-from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.model import Oscillator, require_rebound
 from singimpact.status import Status
 from singimpact.store import write_text
 
@@ -145,6 +145,7 @@ def certify(result: Any) -> Certificate:
 
 
 def _sealed(statement: str, model: Oscillator, numbers: dict[str, Any]) -> Certificate:
+    require_rebound(model, "a certificate")
     if model.parametric and statement not in IN_TIME:
         raise InputError(
             f"the {statement} is not certified in a file: f = {model.f} depends on t, and of such a model the second "

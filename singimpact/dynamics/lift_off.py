@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.expressions import Number, number, subtract
-from singimpact.algebra.numbers import EPSILON, as_float
+from singimpact.algebra.numbers import EPSILON, Array, as_float
 from singimpact.flights.bind import over_floats
 from singimpact.flights.interpreted import workspace
 from singimpact.flights.kernels.roots import first_root
@@ -55,6 +55,38 @@ def release(osc: Oscillator, tau: float, horizon: float | None = None) -> float:
             return _lifted(osc, start + s)
         start, longest = start + width, 2 * width
     return float("inf")
+
+
+def next_lift_offs(osc: Oscillator, times: Array) -> tuple[Array, Array]:
+    """The phases at which masses that rest at times lift off, and the whole periods before; inf or nan as in `release`.
+
+    Parameters
+    ----------
+    osc : a model with a period. times : shape (n,), at which a_c presses.
+
+    Examples
+    --------
+    >>> phases, turns = next_lift_offs(Oscillator("x", "sin(t)", 0, 0), np.array([4.0, 5.0, -2.0]))
+    >>> abs(phases).max() < 1e-15, turns.tolist()
+    (np.True_, [1.0, 1.0, 0.0])
+    """
+    assert osc.period is not None
+    period, lifted = as_float(osc.period), list[float]()
+    turns = np.floor(times / period)
+    begun, phases = times - turns * period, np.full(times.size, np.nan)
+    left = np.argsort(begun)
+    while left.size:
+        start = float(begun[left[0]])
+        time = release(osc, start)
+        # between a rest and its lift-off a_c presses throughout
+        shared = left[begun[left] <= time] if np.isfinite(time) else left[:1]
+        passed = np.floor(time / period) if np.isfinite(time) else 0.0
+        phase = _lifted(osc, time - passed * period) if passed else time
+        phase = next((earlier for earlier in lifted if abs(earlier - phase) <= SAME * period), phase)
+        lifted.append(phase)
+        phases[shared], turns[shared] = phase, turns[shared] + passed
+        left = left[shared.size :]
+    return phases, turns
 
 
 def periods_between(osc: Oscillator, earlier: float, later: float) -> float | None:

@@ -320,6 +320,8 @@ class _Run:
                 kind = Status(int(step.status)).name.replace("hit", "impact")
                 self._go("flight", float(step.tau), float(step.v), kind)
             case Status.sticks:
+                if self.osc.plastic:  # the mass rests after each such impact: that is no flight
+                    self.flown -= 1
                 self._rest()
             case Status.no_return | Status.escaped:
                 self._end("no_return", np.inf)

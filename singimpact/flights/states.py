@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.expressions import Expression
+from singimpact.algebra.expressions import Expression, Number
 from singimpact.algebra.numbers import (
     as_float,
     as_fraction,
@@ -204,12 +204,9 @@ def _clear(osc: Oscillator, states: States, resting: np.ndarray[Any, Any]) -> di
     with np.errstate(all="ignore"):
         here, before, after = (acceleration(osc, tau + 8 * step * np.spacing(tau)) for step in (0, -1, 1))
         clear = (np.abs(before - here) < np.abs(here) / 2) & (np.abs(after - here) < np.abs(here) / 2)
-    signs = np.sign(here).astype(int).tolist()
-    return {
-        index: Zero(states.exact_tau(index), 0, sign)
-        for index, sign, plain in zip(resting.tolist(), signs, clear.tolist(), strict=True)
-        if plain
-    }
+    written, signs = times[resting[clear]].tolist(), np.sign(here[clear]).astype(int).tolist()
+    zeros = [Zero(Number(Fraction(time)), 0, sign) for time, sign in zip(written, signs, strict=True)]
+    return dict(zip(resting[clear].tolist(), zeros, strict=True))
 
 
 def _zero_beside(osc: Oscillator, written: Any, digits: int | None) -> Zero | None:

@@ -67,7 +67,7 @@ class Graze(TouchingKind):
         n = state.closing.n
         if not n:
             yield from heights(state)
-        for i in range(n):
+        for i in range(0 if state.closing.plastic else n):
             yield i, 0, Test(float(state.at[n + i]), float(state.direction[n + i]))
 
     def value(self, state: OrbitState, impact: int) -> float:
@@ -122,9 +122,9 @@ class Graze(TouchingKind):
 
         closing = state.closing
         assert isinstance(closing, Closing)
-        launch = closing.flights(state.at)[state.impact][0]
-        pressing = float(closing.family.end(closing.values(state.at), launch, 0.0, 0.0).by_time[1])
-        tests = {"degenerate graze": pressing} | grazes(state, "two grazes", but=state.impact)
+        tests = {"degenerate graze": float(closing.pushes(state.at)[state.impact])} | grazes(
+            state, "two grazes", but=state.impact
+        )
         if not closing.clocked:  # the determinants vanish at every graze of a cycle
             return tests
         return {"fold at a graze": state.determinant(1.0), "doubling at a graze": state.determinant(-1.0)} | tests

@@ -132,7 +132,8 @@ class EventKind(Protocol):
 def grazes(state: OrbitState, name: str, but: int | None = None) -> dict[str, float]:
     """The velocities of the impacts but one, by a name and the index of the impact."""
     n = state.closing.n
-    return {f"{name} {i}": float(state.at[n + i]) for i in range(n) if i != but}
+    impacts = () if state.closing.plastic else range(n)
+    return {f"{name} {i}": float(state.at[n + i]) for i in impacts if i != but}
 
 
 # ---- kinds that the derivatives of the closing conditions decide: conditions on the return map

@@ -6,6 +6,7 @@ from singimpact.branches.events.interior_graze import INTERIOR_GRAZE
 from singimpact.branches.events.kind import EventKind
 from singimpact.branches.events.meeting_branches import BRANCH_POINT, PITCHFORK, TRANSCRITICAL
 from singimpact.branches.events.neimark_sacker import NEIMARK_SACKER
+from singimpact.branches.events.onset_of_rest import ONSET_OF_REST
 from singimpact.branches.events.own_event import OwnEvent
 from singimpact.branches.events.period_doubling import PERIOD_DOUBLING
 
@@ -16,6 +17,7 @@ KINDS: tuple[EventKind, ...] = (
     BRANCH_POINT,
     GRAZE,
     INTERIOR_GRAZE,
+    ONSET_OF_REST,
     PITCHFORK,
     TRANSCRITICAL,
 )

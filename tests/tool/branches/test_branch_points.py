@@ -75,7 +75,7 @@ def pitchfork():
 def test_a_pitchfork_has_no_certificate_and_no_curve(pitchfork) -> None:
     with pytest.raises(InputError, match=r"no proof covers a pitchfork.* the period doubling of the .1, 1. orbits"):
         pitchfork.certified()
-    with pytest.raises(InputError, match="a fold, doubling, graze or hidden impact"):
+    with pytest.raises(InputError, match="a fold, doubling, graze, hidden impact or onset of rest"):
         si.event_curve(pitchfork, ("clearance", "omega"))
     # the doubling that it names is certified, and lies there
     (half,) = pitchfork.others()
