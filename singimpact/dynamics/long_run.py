@@ -11,7 +11,7 @@ import numpy as np
 
 from singimpact.algebra.numbers import Array, as_float
 from singimpact.contact.points import tangency_points
-from singimpact.dynamics.attractors import CHATTER, OTHER
+from singimpact.dynamics.attractors import AWAY, CHATTER, GONE, OTHER
 from singimpact.dynamics.lift_off import release
 from singimpact.dynamics.orbit import orbit
 from singimpact.flights.orbits import iterate
@@ -71,7 +71,9 @@ def futures(model: Oscillator, phases: tuple[float, ...], classify: Callable[[Ar
         lifted = _lifted(model, phase)
         first = orbit(model, lifted, 0, impacts=1)
         if first.kind.tolist() != ["start", "impact"]:
-            rows.append(Future((OTHER, 0.0, 0.0), np.nan))
+            away = GONE if np.isinf(first.end) else AWAY
+            code = away if first.phases[-1][0] == "no_return" else OTHER
+            rows.append(Future((code, 0.0, 0.0), np.nan))
             continue
         tau, v = float(first.tau[1]), float(first.v[1])
         row = tuple(classify(np.array([tau]), np.array([v]))[0].tolist())

@@ -202,6 +202,11 @@ def test_basins_name_the_attractors_that_the_circle_map_has(G, name):
     assert [each for _, each, _ in found.classes] == [name]
 
 
+def test_a_mass_that_rests_and_then_flies_for_ever_has_no_impact():
+    found = si.ImpactOscillator("sin(x) + 0.2*xdot", "0.6*cos(2.1*t)", "-0.4", 0).basins(size=8)
+    assert {each.kind for each in found.attractors} == {"no impact"}
+
+
 def test_a_diagram_settles_by_release_phases():
     found = si.models.luck_mehta(restitution=0).bifurcation("G", ("1.5", "6"), 40, impacts=60, kept=8)
     assert found.settled.all()
