@@ -21,7 +21,6 @@ _FILES = {
     "lift_off": "release",
     "long_run": "Future chaotic settled",
     "orbit": "Orbit",
-    "release_map": "release_map",
     "remaining": "chatter_completes rest_after sum_of_speeds",
     "settling": "Study chattering",
     "threshold": "SEARCH",

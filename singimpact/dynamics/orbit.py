@@ -253,7 +253,7 @@ class _Run:
 
     def advance(self) -> None:
         """At least one flight, or the end of a chatter."""
-        if self.v > 0 and self.horizon is None:
+        if self.v > 0 and self.horizon is None and not self.osc.plastic:
             if self.short and self._summed():
                 return
             left = self.most - self.flown

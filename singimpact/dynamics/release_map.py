@@ -105,8 +105,8 @@ def release_map(osc: Oscillator, tau: Any = None) -> ReleaseMap:
     landing, later, phase, slope, flat, status = columns
     shift = turns * period + states.turns
     slope[presses], flat[presses] = 0.0, True
-    parts = times + states.turns, landing + shift, later + shift, phase, slope, flat, status_array(status)
-    return ReleaseMap(*(part.reshape(states.shape)[()] for part in parts))
+    columns = [times + states.turns, landing + shift, later + shift, phase, slope, flat, status_array(status)]
+    return ReleaseMap(*(column.reshape(states.shape)[()] for column in columns))
 
 
 def _presses(states: States) -> Array:

@@ -27,6 +27,7 @@ from singimpact.flights.compiled_model import compiled_model
 
 LINEAR = si.linear("2.8", "0.1", "0.8")
 CHATTERS = si.linear("2", "0.7", "0.5")
+PLASTIC = si.models.luck_mehta(G="3.2", restitution=0)
 DUFFING = si.ImpactOscillator("x + xdot/10 + 3*x**3/10", "cos(omega*t)", "0.3", "0.6", {"omega": "1.7"})
 BENT = si.ImpactOscillator("x", "cos(2*t)", "0.3", "-0.8*v/sqrt(1 + v**2)")
 ROWS = {
@@ -161,6 +162,9 @@ FAULTS = {
     "chatter too early": (chatter_too_early(), "basins", LINEAR),
     "more periods": (more_periods(), "basins", CHATTERS),
     "orbits twice": (orbits_twice(), "basins", LINEAR),
+    "lift-off late, without rebound": (lift_off(1e-6), "orbits", PLASTIC),
+    "rest for ever, without rebound": (rest_for_ever(), "orbits", PLASTIC),
+    "more periods, without rebound": (more_periods(), "basins", PLASTIC),
     "sign in D G": (sign_in_the_derivative(), "D G", CHATTERS),
     "slope of rho": (slope_of_rho(), "D G", BENT),
     "branch of rho": (branch_of_rho(), "rebounds", BENT),
@@ -266,7 +270,9 @@ def drawn_models(seed, count):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("osc", list(drawn_models(8, 4)), ids=str)
+@pytest.mark.parametrize(
+    "osc", list(drawn_models(8, 4)) + [osc.replace(restitution=0) for osc in drawn_models(9, 4)], ids=str
+)
 def test_nothing_is_wrong_in_drawn_models_and_pixels_are_decided(osc):
     before = flown(osc, 40, 3)
     rows = {name: row(before) for name, row in ROWS.items() if name != "batches"}

@@ -33,6 +33,9 @@ MODELS = {
     "elastic, rarely back": si.linear("2.8", "-0.9", 1),
     "rebound by an expression": si.ImpactOscillator("x", "cos(2*t)", "0.3", "-0.8*v/sqrt(1 + v**2)"),
     "constant force": si.ImpactOscillator("0", "-2", 0, "1/2"),
+    "no rebound": si.linear("2.8", "0.1", 0),
+    "no rebound, on a table": si.models.luck_mehta(G="3.8", restitution=0),
+    "no rebound, Duffing": DUFFING.replace(clearance="-0.3", restitution=0),
     "no graze": si.ImpactOscillator("sqrt(4 + x)", "sin(t)**2/(2 + cos(t))", 0, "1/2"),
 }
 

@@ -36,6 +36,7 @@ NO_NUMBER |= {
     "bifurcation",
     "classify",
     "grown_gamma",
+    "release_map",
     "certified_gamma",  # what it proves is checked by a second program
     "transitions",
     "manifold",

@@ -33,6 +33,7 @@ CUBIC = si.ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "cos(1.7*t)", "0.3", "0.6
 BENT = si.ImpactOscillator("x", "cos(2*t)", "0.3", "-0.5*v + v**3/10")
 CLOSED = si.linear(4, 0, "1/2")
 PARAMETRIC = si.ImpactOscillator("(1 + 0.3*cos(2*t))*x + 0.1*xdot + 0.2*x**3", "cos(t)", "0.2", "0.8")
+PLASTIC = si.linear("2.8", "0.1", 0)
 CLOCKLESS = si.ImpactOscillator("x - (1 - x**2)*xdot", "0", "-1.5", "0.8")
 
 
@@ -79,7 +80,7 @@ CALLS = {
     "ImpactOscillator.impact_map": (
         [lambda d: LINEAR.impact_map("1.2", "0.01", digits=d), lambda d: BENT.impact_map("0.3", "0.7", digits=d),
          lambda d: CUBIC.impact_map("1.2", "0.1", digits=d), lambda d: PARAMETRIC.impact_map("1.2", "0.1", digits=d),
-         lambda d: CLOCKLESS.impact_map("1.2", "0.1", digits=d)],
+         lambda d: CLOCKLESS.impact_map("1.2", "0.1", digits=d), lambda d: PLASTIC.impact_map("1.2", "0.1", digits=d)],
         (5, 20, 33),
     ),
     "ImpactOscillator.first_hit": ([lambda d: WAVES.first_hit(["0.1", "pi/3"], [0, "1e-30"], digits=d)], (15, 40, 70)),
@@ -92,7 +93,8 @@ CALLS = {
     "Event.certified": ([lambda d: [event.certified(d) for event in events()]], (15, 30)),
     "ImpactOscillator.chatter_limit": (
         [lambda d: WAVES.chatter_limit("1.2", "0.01", digits=d), lambda d: BENT.chatter_limit("1.2", "0.01", digits=d),
-         lambda d: PARAMETRIC.chatter_limit("2.5", "0.01", digits=d)],
+         lambda d: PARAMETRIC.chatter_limit("2.5", "0.01", digits=d),
+         lambda d: PLASTIC.chatter_limit("1.2", "0.1", digits=d)],
         (12, 30),
     ),
     "theory.grazing_map": (

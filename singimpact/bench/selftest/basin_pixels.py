@@ -98,6 +98,8 @@ class Follower:
 
     def first(self, tau: float, v: float) -> Fate:
         """The first behaviour of an orbit: a chatter that completes counts."""
+        if not v and self.plain.push(tau) < 0:
+            return Fate("chatter", tau=tau)
         begun, wait = tau, 0
         states = deque([(tau, v, 0.0)], FOLLOWED.periods + 1)
         for count in range(1, self.impacts + 1):
@@ -119,8 +121,8 @@ class Follower:
     def _fly(self, states: deque[State]) -> int:
         """Put the state after the next impact behind the others; MISS or UNDECIDED where there is none."""
         tau, v, turns = states[-1]
-        hit = self.plain.quick_impact(tau, v, self.horizon)
-        if hit.status != HIT or not hit.v > 0:
+        hit = self.plain.fly(tau, v, True, self.horizon)
+        if not self.plain.goes_on(hit):
             return MISS if hit.status == MISS else UNDECIDED
         passed = (tau + hit.time) // self.period
         states.append((tau + hit.time - passed * self.period, hit.v, turns + passed))
@@ -193,7 +195,7 @@ def _after_lift_off(follower: Follower, index: int) -> tuple[Fate, float]:
     """The behaviour after a lift-off, and the time to the next one where a chatter completes."""
     lifted = follower.plain.lift_offs[index]
     hit = follower.plain.lifted(lifted, follower.horizon)
-    if hit.status != HIT or not hit.v > 0:
+    if not follower.plain.goes_on(hit):
         return Fate("no impact" if hit.status == MISS else "undecided"), inf
     fate = follower.first(lifted + hit.time, hit.v)
     if fate.kind != "chatter" or not isfinite(fate.tau):

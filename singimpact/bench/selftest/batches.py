@@ -11,7 +11,7 @@ import numpy as np
 
 from singimpact.algebra.numbers import EPSILON, Array
 from singimpact.bench.drawn import compile_entries
-from singimpact.bench.selftest.draws import Flown, against_plain_orbits
+from singimpact.bench.selftest.draws import LEAST, Flown, against_plain_orbits
 from singimpact.bench.selftest.rows import Row, Tally
 from singimpact.bench.truth.graded_steps import HIT, MISS
 from singimpact.bench.truth.plain_orbits import PlainOrbits
@@ -79,7 +79,7 @@ def _lane(plain: PlainOrbits, state: tuple[float, float], ends: Any, lane: tuple
             tally.leave("rounding decides a flight")
             return
         late += BATCHES.wrong * true[0] + 4 * EPSILON * (abs(state[0]) + true[0])
-        fast += BATCHES.wrong * true[1]
+        fast += BATCHES.wrong * true[1] + LEAST
         if status != Status.hit:
             tally.judge(np.inf, call)
             return

@@ -59,6 +59,10 @@ class Scales(NamedTuple):
     period: float | None
 
 
+LEAST = 1e-300
+"""Allowed of a velocity that is 0, with restitution 0."""
+
+
 class Flown(NamedTuple):
     """Launches of a model with the impacts that `osc.impact_map` gives. left : drawn and not flown, out of time."""
 

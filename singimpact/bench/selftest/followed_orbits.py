@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from singimpact.algebra.numbers import EPSILON
-from singimpact.bench.selftest.draws import Flown, against_plain_orbits
+from singimpact.bench.selftest.draws import LEAST, Flown, against_plain_orbits
 from singimpact.bench.selftest.rows import Row, Tally
 from singimpact.bench.truth.graded_steps import HIT, MISS, UNDECIDED
 from singimpact.bench.truth.plain_orbits import Impact, PlainOrbits
@@ -96,7 +96,7 @@ def _impact(
         tally.judge(np.inf, state)
         return
     late = ORBITS.wrong * hit.time + 4 * EPSILON * (abs(after[0]) + abs(before[0]))
-    fast = ORBITS.wrong * hit.v
+    fast = ORBITS.wrong * hit.v + LEAST
     ratio = _ratio(hit, passed, after[1], (late, fast))
     if not ratio <= 1 and not rest:
         more = plain.spread(*before)

@@ -95,7 +95,22 @@ class PlainOrbits:
             v = self.rho(velocity)
         except (ArithmeticError, ValueError):
             return nan
-        return float(v) if isinstance(v, int | float) and 0 < v < inf else nan
+        return float(v) if isinstance(v, int | float) and (0 < v < inf or (v == 0 and self.plastic)) else nan
+
+    @property
+    def plastic(self) -> bool:
+        """Whether impacts leave no velocity."""
+        return self.slope == 0
+
+    def goes_on(self, hit: Impact) -> bool:
+        """Whether a flight ended in an impact with a velocity after it."""
+        return hit.status == HIT and (hit.v > 0 or self.plastic)
+
+    def fly(self, tau: float, v: float, quick: bool, horizon: float | None = None) -> Impact:
+        """The first impact; of a mass at rest where a_c lifts it."""
+        if v or not self.plastic:
+            return self.quick_impact(tau, v, horizon) if quick else self.impact(tau, v, horizon)
+        return self.lifted(tau, horizon) if self.push(tau) > 0 else Impact(UNDECIDED, nan, nan, nan)
 
     def impact(self, tau: float, v: float, horizon: float | None = None) -> Impact:
         """The first impact of a flight, alike at two finenesses."""
@@ -117,10 +132,10 @@ class PlainOrbits:
         ----------
         quick : each flown at one fineness alone.
         """
-        since, fly = 0.0, self.quick_impact if quick else self.impact
+        since = 0.0
         for _ in range(count):
-            hit = fly(tau + since, v)
-            if hit.status != HIT or not hit.v > 0:
+            hit = self.fly(tau + since, v, quick)
+            if not self.goes_on(hit):
                 return None
             since, v = since + hit.time, hit.v
         return since, v
@@ -150,6 +165,10 @@ class PlainOrbits:
         and the correction is its error.
         """
         since, before, r = 0.0, nan, self.slope
+        if self.plastic:
+            time = self.impact(tau, v).time if v else 0.0
+            status = "complete" if self.push(tau + time) < 0 else "lifts off"
+            return Chatter(status if isfinite(time) else "open", time, 1e-11 * time, 1)
         if not r < 1:
             return Chatter("open", nan, inf, 0)
         for count in range(most + 1):
