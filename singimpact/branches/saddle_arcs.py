@@ -19,6 +19,7 @@ from singimpact.branches.solutions import orbit_period
 from singimpact.dynamics.invariant_arcs import before, model_step
 from singimpact.flights.derivative import derivative
 from singimpact.inputs import InputError, refuse
+from singimpact.oscillator.model import require_rebound
 
 
 @dataclass(frozen=True)
@@ -139,6 +140,7 @@ def checked_saddle(saddle: Any) -> PeriodicOrbit:
     """
     if not isinstance(saddle, PeriodicOrbit) or saddle.oscillator is None:
         raise refuse("saddle", saddle, "an unstable orbit of osc.periodic(n, k)")
+    require_rebound(saddle.oscillator, "W^s or W^u of a saddle")
     if saddle.kind != "impacts":
         raise refuse("saddle", repr(saddle), "an orbit with finitely many impacts: the others have no states to leave")
     if not saddle.visible:

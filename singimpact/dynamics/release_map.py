@@ -4,7 +4,7 @@ A mass at rest on the wall leaves it where a_c > 0: at once, or at the next rise
 follows depends on the phase of the landing alone. The map is flat where the mass rests on the way.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -35,7 +35,7 @@ class ReleaseMap(Result):
     slope : d tau/d start; 0 on the flat pieces, infinite at a graze.
     flat : bool, whether the mass rests before it leaves or after it lands: tau does not depend on `start` there.
     status : `hit`, or `graze` of a landing without velocity; `sticks` for ever; the status of a flight that does not
-        land, whose landing and phase are nan.
+        land, whose landing and phase are nan. period : of the forcing.
     """
 
     start: Any
@@ -45,6 +45,7 @@ class ReleaseMap(Result):
     slope: Any
     flat: Any
     status: Any
+    period: float
 
     def __repr__(self) -> str:
         statuses = value_in_words(np.asarray(self.status), Status)
@@ -106,7 +107,8 @@ def release_map(osc: Oscillator, tau: Any = None) -> ReleaseMap:
     shift = turns * period + states.turns
     slope[presses], flat[presses] = 0.0, True
     columns = [times + states.turns, landing + shift, later + shift, phase, slope, flat, status_array(status)]
-    return ReleaseMap(*(column.reshape(states.shape)[()] for column in columns))
+    start, landing, later, phase, slope, flat, status = (column.reshape(states.shape)[()] for column in columns)
+    return ReleaseMap(start, landing, later, phase, slope, flat, status, period)
 
 
 def _presses(states: States) -> Array:
@@ -118,8 +120,8 @@ def _from_leaving(osc: Oscillator, times: Array) -> ReleaseMap:
     """The map at times, shape (n,), at which the mass leaves the wall at once; inf and nan are of a rest for ever."""
     period, size = as_float(osc.period), times.size  # type: ignore[arg-type]
     empty = np.full(size, np.nan)
-    result = ReleaseMap(times, empty, times.copy(), empty.copy(), empty.copy(), np.zeros(size, bool), np.zeros(size))
-    status = np.where(np.isnan(times), Status.unresolved, Status.sticks).astype(np.int8)
+    flat, status = np.zeros(size, bool), np.where(np.isnan(times), Status.unresolved, Status.sticks).astype(np.int8)
+    result = ReleaseMap(times, empty, times.copy(), empty.copy(), empty.copy(), flat, status, period)
     going = np.flatnonzero(np.isfinite(times))
     step = impact_map(osc, times[going], 0.0)
     status[going] = step.status
@@ -137,4 +139,4 @@ def _from_leaving(osc: Oscillator, times: Array) -> ReleaseMap:
     ends = rests[~np.isfinite(phases)]
     status[ends] = np.where(np.isnan(result.phase[ends]), Status.unresolved, Status.sticks)
     result.phase[ends] = np.nan
-    return replace(result, status=status)
+    return result

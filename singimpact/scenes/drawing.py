@@ -21,6 +21,7 @@ from singimpact.branches.transitions import BothSides
 from singimpact.dynamics.basins_of_attraction import Basins
 from singimpact.dynamics.bifurcation_diagram import Bifurcation
 from singimpact.dynamics.orbit import Orbit
+from singimpact.dynamics.release_map import ReleaseMap
 from singimpact.dynamics.sampling import Section
 from singimpact.inputs import InputError, checked_keywords, refuse
 from singimpact.scenes.basins_picture import draw_basins, draw_both_sides
@@ -32,7 +33,14 @@ from singimpact.scenes.branch_picture import (
     draw_event_curves,
 )
 from singimpact.scenes.manifolds import draw_certified_crossing, draw_crossings, draw_horseshoe, draw_manifolds
-from singimpact.scenes.orbit_picture import SIZE as SHEET, draw_orbit, draw_periodic, draw_section, orbit_sheet
+from singimpact.scenes.orbit_picture import (
+    SIZE as SHEET,
+    draw_orbit,
+    draw_periodic,
+    draw_release_map,
+    draw_section,
+    orbit_sheet,
+)
 from singimpact.scenes.scene import Scene
 from singimpact.scenes.style import BLACK, PENS, darken
 from singimpact.surface.curve import Curve
@@ -53,11 +61,11 @@ def plot(
 
     Parameters
     ----------
-    thing : an orbit, a periodic orbit with impacts, a section of an orbit, a scene, basins, a bifurcation diagram, a
-        branch or an event curve or a list of them, W^s or W^u of a saddle or a list of them, the points where two
-        cross, a certified orbit in which they do, a certified horseshoe, a border orbit, of which the cascade is drawn,
-        both sides of a transition (on two axes), a curve or a list of curves of one plane, or an impact surface, of
-        which Z and H are drawn.
+    thing : an orbit, a periodic orbit with impacts, a section of an orbit, a map of release phases, a scene, basins, a
+        bifurcation diagram, a branch or an event curve or a list of them, W^s or W^u of a saddle or a list of them, the
+        points where two cross, a certified orbit in which they do, a certified horseshoe, a border orbit, of which the
+        cascade is drawn, both sides of a transition (on two axes), a curve or a list of curves of one plane, or an
+        impact surface, of which Z and H are drawn.
     ax : where to draw; those of a new figure of pyplot when it is not given, so that a notebook shows it and
         `matplotlib.pyplot.show()` does. Branches drawn on the axes of a bifurcation diagram keep its limits, and so do
         manifolds on those of basins, and a certified orbit on those of manifolds.
@@ -201,6 +209,7 @@ ALONE: tuple[tuple[type, tuple[float, float], Drawer], ...] = (
     (Orbit, WIDE, draw_orbit),
     (PeriodicOrbit, WIDE, draw_periodic),
     (Section, HIGH, draw_section),
+    (ReleaseMap, HIGH, draw_release_map),
     (Basins, HIGH, draw_basins),
 )
 # types that are drawn alone, or several in one picture

@@ -15,6 +15,7 @@ import numpy as np
 from singimpact.algebra.numbers import Array, as_float
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.dynamics.orbit import Orbit, orbit as flown
+from singimpact.dynamics.release_map import ReleaseMap
 from singimpact.dynamics.sampling import Section
 from singimpact.flights.flight_path import path
 from singimpact.inputs import InputError, checked_keywords, refuse, whole
@@ -78,6 +79,18 @@ def draw_section(section: Section, axes: Any) -> Any:
     size = 4.0 if section.t.size <= STYLE.many else 1.2
     axes.plot(section.x, section.xdot, "o", color=BLUE, markersize=size, markeredgewidth=0, rasterized=True)
     axes.set(xlabel="displacement $x$", ylabel="velocity $\\dot x$")
+    return axes
+
+
+def draw_release_map(releases: ReleaseMap, axes: Any) -> Any:
+    """Draw the map of release phases, its flat pieces in another colour, and the diagonal."""
+    period = releases.period
+    start, phase, flat = (np.ravel(column) for column in (releases.start, releases.phase, releases.flat))
+    axes.plot([0, period], [0, period], color=GREY, linewidth=0.8, label="diagonal", zorder=1)
+    for where, color, label in ((~flat, BLUE, "leaves at once"), (flat, VERMILLION, "rests: flat")):
+        axes.plot(np.mod(start[where], period), phase[where], ".", color=color, markersize=2.5, label=label)
+    axes.set(xlabel=r"release phase $\tau$", ylabel="next release phase", xlim=(0, period), ylim=(0, period))
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=3, frameon=False, fontsize="small")
     return axes
 
 
@@ -233,7 +246,8 @@ def _velocities(orbit: Orbit, axes: Any, since: float | None) -> None:
     _rests(orbit, axes, low, (float(orbit.tau[0]), end), 5.0)
     if since is not None:
         axes.axvspan(since, end, color=WALL, zorder=0, label="part shown above")
-    axes.set(yscale="log", xlabel="time $t$", ylabel="velocity $v$ after an impact", xlim=(orbit.tau[0], end))
+    axes.set(xlabel="time $t$", ylabel="velocity $v$ after an impact", xlim=(orbit.tau[0], end))
+    axes.set_yscale("log" if largest > 0 else "linear")
     axes.set_title("all impacts", fontsize="medium")
     legend_below(axes, legend_entries(axes), under=0.2)
 

@@ -144,6 +144,7 @@ def test_old_names_are_no_longer_those_of_any_argument():
         lambda osc: osc.threshold(1.5),
         lambda osc: osc.grown_gamma(),
         lambda osc: osc.certified_gamma(),
+        lambda osc: osc.explore(points=2),
         lambda osc: si.theory.gamma(4, model=osc),
         lambda osc: si.theory.chatter_limit(4, osc, "1.5"),
         lambda osc: si.border_orbits(osc, "clearance", ("0.3", "0.4"), points=3),

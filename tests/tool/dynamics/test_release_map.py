@@ -153,6 +153,12 @@ def test_a_mass_that_is_pressed_for_ever_stays():
     assert np.isnan(found.phase).all()
 
 
+def test_the_picture_shows_the_flat_pieces_and_the_diagonal():
+    found = table("4.3").release_map()
+    names = {line.get_label(): line.get_xdata().size for line in si.plot(found).lines}
+    assert names == {"diagonal": 2, "leaves at once": (~found.flat).sum(), "rests: flat": found.flat.sum()}
+
+
 def test_release_maps_need_the_restitution_0_and_a_period():
     with pytest.raises(InputError, match=r"restitution = 0\.5 is not accepted: give 0"):
         si.linear(2, 0, "0.5").release_map()
