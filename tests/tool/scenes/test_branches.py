@@ -170,4 +170,4 @@ def test_what_cannot_be_drawn_together(branch, closed, curves) -> None:
 
 def test_styles_tell_stretches_apart_without_colour() -> None:
     assert len({str(style) for style, _ in LINES.values()}) == 3
-    assert len(set(MARKS.values())) == len(MARKS) == 8
+    assert len(set(MARKS.values())) == len(MARKS) == 9
