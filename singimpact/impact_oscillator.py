@@ -204,7 +204,7 @@ class ImpactOscillator(Oscillator):
         Returns
         -------
         tau, v, status : the last states, and 0; or, of an orbit that ended early, its last impact and the status of
-            the flight after it.
+            the flight after it; with restitution 0 `sticks` where the mass rests.
 
         Examples
         --------
@@ -258,7 +258,7 @@ class ImpactOscillator(Oscillator):
         return inverse_map(self, tau, v, digits=digits, horizon=horizon)
 
     def chatter_limit(self, tau: Any, v: Any, *, digits: int | None = None, impacts: int = 1_000_000) -> ChatterLimit:
-        """The time at which infinitely many impacts accumulate.
+        """The time at which infinitely many impacts accumulate; with restitution 0 that of the first impact.
 
         Parameters
         ----------

@@ -32,7 +32,7 @@ from singimpact.flights.family import family
 from singimpact.flights.impact_map import checked_digits
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.linear import linear_form
-from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.model import Oscillator, require_rebound
 from singimpact.status import Status
 
 
@@ -69,6 +69,11 @@ def periodic(
     v : (low, high), for models without a closed form and n = 1 or 2: `.complete` then tells by a proof whether there
         are others with all velocities after impacts in this window; with n = 1 this takes seconds, with n = 2 a minute.
     digits : decimal digits; the orbits then hold mpmath numbers.
+
+    Notes
+    -----
+    With restitution 0 orbits of n impacts start from rest at each of them; their multipliers are the slope of the map
+    of release phases around the orbit, and 0.
 
     Returns
     -------
@@ -152,6 +157,7 @@ def _all(osc: Oscillator, n: int, k: int) -> tuple[list[Array], tuple[str, ...] 
 
 def _limit_cycles(osc: Oscillator, n: Any, others: tuple[Any, ...]) -> PeriodicOrbits:
     """The limit cycles of n impacts of a model in which t does not occur."""
+    require_rebound(osc, "a search for limit cycles")
     for name, value in zip(("k", "start", "v", "digits"), others, strict=True):
         if value is not None:
             raise refuse(

@@ -120,6 +120,7 @@ def chatter_limit(
 
     Notes
     -----
+    With restitution 0 the first impact is the end, or at `lifts_off` the mass leaves there at once.
     With digits, tau of a model with a number for restitution is enclosed (`dynamics.enclosed`): `certified` has
     value and radius, and `error` covers them.  For other models `error` is an estimate from the last terms.
 

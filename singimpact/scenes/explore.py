@@ -26,7 +26,7 @@ from singimpact.flights.kernels import roots, steps, taylor
 from singimpact.flights.limits import LIMITS, degree_for
 from singimpact.flights.model_numbers import numbers_of_flow, recurrence_of
 from singimpact.inputs import checked_keywords, refuse, whole
-from singimpact.oscillator.model import Oscillator, require_rebound
+from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.rebound import rho_of
 from singimpact.progress import ProgressLine
 from singimpact.scenes.clearance_frames import SETTINGS, ClearanceFilm, ClearanceFrame, clearance_film
@@ -106,7 +106,6 @@ def explore(osc: Oscillator, between: Any = None, points: int = SETTINGS.steps) 
     """
     if not isinstance(osc, Oscillator):
         raise refuse("osc", osc, "an ImpactOscillator")
-    require_rebound(osc, "the page, which draws gamma,")
     whole("points", points, 2, 1001)
     with ProgressLine() as line:
         film = clearance_film(osc, between, points, line.show)

@@ -88,6 +88,8 @@ def test_curves_of_both_thresholds():
 
 
 def test_refusals():
+    with pytest.raises(InputError, match="restitution = 0 is not accepted here: a search for limit cycles"):
+        si.ImpactOscillator("x - (1 - x**2)*xdot", "0", "-1.5", 0).periodic(1)
     (orbit,) = table("3.5").periodic(1, 1)
     with pytest.raises(InputError, match="restitution = 0 is not accepted here: a branch over it"):
         orbit.branch("restitution")
