@@ -269,10 +269,12 @@ def drawn_models(seed, count):
         yield si.ImpactOscillator(cubic, "cos(w*t)", f"{c:.3f}", f"{r:.3f}", {"w": f"{omega:.3f}"})
 
 
+# without damping and rebound, shallow returns come often: steps of the truth from rest pass over some that balls prove
+DAMPED = [osc.replace(restitution=0) for osc in drawn_models(9, 4) if "xdot" in str(osc.f)]
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "osc", list(drawn_models(8, 4)) + [osc.replace(restitution=0) for osc in drawn_models(9, 4)], ids=str
-)
+@pytest.mark.parametrize("osc", [*drawn_models(8, 4), *DAMPED], ids=str)
 def test_nothing_is_wrong_in_drawn_models_and_pixels_are_decided(osc):
     before = flown(osc, 40, 3)
     rows = {name: row(before) for name, row in ROWS.items() if name != "batches"}
