@@ -94,11 +94,14 @@ def basins(
     executor: Any = None,
     output: Any = None,
 ) -> Basins:
-    """Basins of attraction: the attractor of each state of a grid: an (n, k) orbit, repeated chatter, rest, chaos.
+    """Basins of attraction: the attractor of each state of a grid: an orbit or cycle, repeated chatter, rest, chaos.
 
     Parameters
     ----------
-    osc : a model with a period. window : ((tau_low, tau_high), (v_low, v_high)); one period and (0, 2) without it.
+    osc : a model with a period, without t, or with sums of waves in t.
+    window : ((tau_low, tau_high), (v_low, v_high)); one period and (0, 2) without it, or a turn of the fastest wave.
+        Of a model without t the starts are off the wall: ((x_low, x_high), (xdot_low, xdot_high)); without it x from c
+        to c + 2 max(1, |c|), and (-2, 2).
     size : states on a side, from 2 to 10000. impacts : at most, of an orbit that does not settle; its class then says
         so. executor, output : as for `sweep`; a case is some rows of the grid.
         The default executor is one thread for each core.
@@ -110,18 +113,22 @@ def basins(
 
     Raises
     ------
-    InputError : a model without a period, or a window or a size that is not valid.
+    InputError : another model, or a window or a size that is not valid.
 
     Examples
     --------
-    >>> from singimpact.impact_oscillator import linear
+    >>> from singimpact.impact_oscillator import ImpactOscillator, linear
+    >>> basins(ImpactOscillator("x - (1 - x**2)*xdot", "0", "-2.1", "0.8"), size=4)
+    Basins(4 x 4 states: limit cycle without impact, period 6.66329 100 %)
     >>> basins(linear(2, "0.7", "0.5"), ((0, 3), (0, 1)), 8)
     Basins(8 x 8 states: (inf, 1) chatter for ever 100 %)
     """
     from singimpact.dynamics.basins_of_attraction import basins
 
     whole("size", size, 2, 10_000)
-    tau, v = (None, (0, 2)) if window is None else _two_ends(window, "((tau_low, tau_high), (v_low, v_high))")
+    starts = isinstance(osc, Oscillator) and osc.autonomous
+    names = "((x_low, x_high), (xdot_low, xdot_high))" if starts else "((tau_low, tau_high), (v_low, v_high))"
+    tau, v = (None, None) if window is None else _two_ends(window, names)
     return basins(osc, tau, v, size, executor, output, impacts)
 
 
@@ -142,8 +149,9 @@ def bifurcation(
 
     Parameters
     ----------
-    osc : a model with a period. over : "clearance", "restitution", a parameter, "amplitude", "damping", "stiffness" or
-        "phase" (also if the model does not name them). between : its interval. points : values, evenly spaced.
+    osc : a model with a period, without t, or with sums of waves in t.
+    over : "clearance", "restitution", a parameter, "amplitude", "damping", "stiffness" or "phase" (also if the model
+        does not name them). between : its interval. points : values, evenly spaced.
     start : the first state (tau, v) of each orbit. impacts : number for each value.
     kept : last events of each orbit that are returned.
     sweeping : `settle`, the impacts at most of an orbit whose events do not repeat (20000); `executor` and `output` of
@@ -153,12 +161,14 @@ def bifurcation(
     Returns
     -------
     Bifurcation : `.values`, shape (points,), and `.events`, shape (points, kept, 3): phase, v and 1 where chatter has
-        ended; nan where an orbit had fewer. `.settled`, shape (points,): whether the events repeat. `si.plot` draws it,
-        `.to_csv(file)` writes it.
+        ended; nan where an orbit had fewer; without a period the time since the event before stands in place of the
+        phase. `.settled`, shape (points,): whether the events repeat, or where the forcing never does, whether a
+        neighbour comes to the orbit; `.attractors` have the names of basins. `si.plot` draws it, `.to_csv(file)` writes
+        it.
 
     Raises
     ------
-    InputError : a model without a period, an unknown parameter, or an interval that is not valid.
+    InputError : another model, an unknown parameter, or an interval that is not valid.
 
     Examples
     --------

@@ -6,13 +6,16 @@ import click
 
 from singimpact.cli.model_options import model_options, take_model
 from singimpact.cli.output import as_json_text, columns, save, save_once, suffix_of
+from singimpact.inputs import refuse
 from singimpact.store import require_writable
 
 
 @click.command()
 @model_options
 @click.option("--tau", nargs=2, metavar="LOW HIGH", help="Window of launch phases.  [default: one period]")
-@click.option("--v", nargs=2, metavar="LOW HIGH", default=("0", "2"), show_default=True, help="Window of velocities.")
+@click.option("--v", nargs=2, metavar="LOW HIGH", help="Window of velocities.  [default: 0 2]")
+@click.option("--x", nargs=2, metavar="LOW HIGH", help="Without t in f and g: window of x at the start.")
+@click.option("--xdot", nargs=2, metavar="LOW HIGH", help="The same of x'.  [default: -2 2]")
 @click.option("--size", type=click.IntRange(2, 10_000), default=600, show_default=True, help="States a side.")
 @click.option(
     "--impacts",
@@ -33,8 +36,6 @@ from singimpact.store import require_writable
 @click.option("-o", "--output", metavar="FILE.png", required=True, help="The picture: .png, .pdf or .svg.")
 @click.option("--json", "as_json", is_flag=True, help="Give the shares of the classes as JSON.")
 def command(
-    tau: tuple[str, str] | None,
-    v: tuple[str, str],
     size: int,
     impacts: int,
     workers: int | None,
@@ -43,14 +44,20 @@ def command(
     as_json: bool,
     **options: Any,
 ) -> None:
-    """Basins of attraction on a grid of launches: (n, k) orbits, repeated chatter, rest, chaos.
+    """Basins of attraction on a grid of launches: (n, k) orbits, limit cycles, repeated chatter, rest, chaos.
 
-    An (n, k) orbit has n impacts in k periods of the forcing.
+    An (n, k) orbit has n impacts in k periods of the forcing. A model without t has a grid of starts off the wall.
     """
     suffix_of(output)
     require_writable(output)
     keep = options.pop("keep")
+    ends = {name: options.pop(name) for name in ("tau", "v", "x", "xdot")}
     model = take_model(options)
+    axes = ("x", "xdot") if model.autonomous else ("tau", "v")
+    for name, value in ends.items():
+        if value is not None and name not in axes:
+            raise refuse(f"--{name}", " ".join(value), f"--{axes[0]} and --{axes[1]} for this model")
+    tau, v = (ends[name] for name in axes)
 
     def make() -> tuple[Any, Any]:
         from contextlib import nullcontext

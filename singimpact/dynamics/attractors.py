@@ -14,14 +14,17 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.numbers import Array, as_float
+from singimpact.algebra.numbers import Array
+from singimpact.dynamics.phases import Phases, phases_of
 from singimpact.flights.derivative import derivative
 from singimpact.flights.orbits import iterate
 from singimpact.oscillator.model import Oscillator
 
-OTHER, CHATTER, CHAOS, GONE, AWAY, STUCK, SENSITIVE = range(7)
+OTHER, CHATTER, CHAOS, GONE, AWAY, STUCK, SENSITIVE, CYCLE, STILL, LEVEL, RESPONSE, RESTING = range(12)
 """Classes of states that reach no periodic orbit: not settled, chatter that completes, no period and neighbours that
-separate, proved never to return, no impact before the horizon, a flight that is unresolved, decided by rounding."""
+separate, proved never to return, no impact before the horizon, a flight that is unresolved, decided by rounding;
+without a clock a cycle that does not touch the wall, a rest off the wall, and closed orbits beside closed orbits;
+with a forcing that never repeats a response to which neighbours come, and one with rests again and again."""
 PLACES = 1000  # a class (n, k) is coded n * PLACES + k
 
 
@@ -68,21 +71,18 @@ def closing_orbits(
 
 def _returns(model: Oscillator, tau: Array, v: Array, fast: float, most: int) -> Array:
     """(n, k) of states that return to themselves, else OTHER."""
-    assert model.period is not None
-    period = as_float(model.period)
+    phases = phases_of(model)
     codes = np.full(tau.size, OTHER, dtype=np.int32)
-    home = tau - period * np.floor(tau / period)
-    at, speed, turns = home, v, np.zeros(tau.size)
+    home = phases.of(tau)
+    at, speed, flown = home, v, np.zeros(tau.size)
     for n in range(1, most + 1):
         if (codes != OTHER).all():
             break
         ends = iterate(model, at, speed, 1)
-        # doubles do here, and a time within a period needs no exact reduction, which costs more than the flight
-        passed = np.floor(ends.tau / period)
-        at, speed, turns = ends.tau - passed * period, ends.v, turns + passed
-        k = turns + np.rint((at - home) / period)
-        near = apart((at, speed), (home, v), period, fast) < SETTINGS.close
-        new = near & (codes == OTHER) & (k > 0) & (k < PLACES)
+        flown += ends.tau - at
+        at, speed, k = phases.of(ends.tau), ends.v, phases.periods(flown)
+        near = apart((at, speed), (home, v), phases, fast) < SETTINGS.close
+        new = near & (codes == OTHER) & (k >= phases.clocked) & (k < PLACES)
         codes[new] = (n * PLACES + k[new]).astype(np.int32)
     return codes
 
@@ -97,23 +97,21 @@ def caught(known: list[Attractor], model: Oscillator, tau: Array, v: Array, fast
 
 def within(attractor: Attractor, model: Oscillator, tau: Array, v: Array, fast: float, size: float) -> Array:
     """Whether states lie nearer than `size`, relative, to a state of the attractor."""
-    assert model.period is not None
-    period, near = as_float(model.period), np.zeros(tau.size, dtype=bool)
+    phases, near = phases_of(model), np.zeros(tau.size, dtype=bool)
     for state in zip(attractor.tau.tolist(), attractor.v.tolist(), strict=True):
-        near |= apart((tau, v), state, period, fast) < size
+        near |= apart((tau, v), state, phases, fast) < size
     return near
 
 
-def apart(states: Any, others: Any, period: float, fast: float) -> Array:
-    """Distances of states (tau, v): phases in periods, velocities in units of `fast`; the larger counts.
+def apart(states: Any, others: Any, phases: Phases, fast: float) -> Array:
+    """Distances of states (tau, v): phases in their units, velocities in units of `fast`; the larger counts.
 
     Examples
     --------
-    >>> apart((np.array([7.1, 0.5]), np.array([1.0, 2.0])), (0.1, 1.0), 7.0, 4.0).round(9).tolist()
+    >>> apart((np.array([7.1, 0.5]), np.array([1.0, 2.0])), (0.1, 1.0), Phases(7.0), 4.0).round(9).tolist()
     [0.0, 0.25]
     """
-    turns = (states[0] - others[0]) / period
-    return np.asarray(np.maximum(np.abs(turns - np.rint(turns)), np.abs(states[1] - others[1]) / fast))
+    return np.asarray(np.maximum(np.abs(phases.off(states[0], others[0])), np.abs(states[1] - others[1]) / fast))
 
 
 def new_attractors(
@@ -140,15 +138,14 @@ def states_of(model: Oscillator, code: int, tau: float, v: float) -> tuple[Array
 
 def _surrounded(model: Oscillator, code: int, tau: float, v: float, fast: float) -> Attractor:
     """An attractor with the largest neighbourhood whose border is observed to contract."""
-    assert model.period is not None
-    period, count = as_float(model.period), code // PLACES
+    unit, count = phases_of(model).unit, code // PLACES
     times, speeds = states_of(model, code, tau, v)
     size = SETTINGS.catch
     while size > SETTINGS.close:
         attractor = Attractor(code, times, speeds, size)
         edge = np.array([(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if i or j]) * size
         start = (
-            times[:, None] + period * edge[:, 0],
+            times[:, None] + unit * edge[:, 0],
             np.maximum(speeds[:, None] + fast * edge[:, 1], 1e-3 * speeds[:, None]),
         )
         at, speed, turned = start[0].ravel(), start[1].ravel(), 0
@@ -215,10 +212,9 @@ def nearby_orbits(model: Oscillator, tau: Array, v: Array, n: Array, k: Array, f
     >>> bool(beside.found[0]), int(beside.n[0])
     (True, 1)
     """
-    assert model.period is not None
-    period, scale = as_float(model.period), np.array([as_float(model.period), fast])
-    tau = tau - period * np.floor(tau / period)
-    starts = np.stack([tau, v], axis=-1)
+    phases = phases_of(model)
+    scale = np.array([phases.unit, fast])
+    starts = np.stack([phases.of(tau), v], axis=-1)
     states, attracting = starts.copy(), np.zeros(tau.size, dtype=bool)
     first, left = np.full(tau.size, np.inf), np.arange(tau.size)
     for step in range(NEARBY.steps):
@@ -227,7 +223,8 @@ def nearby_orbits(model: Oscillator, tau: Array, v: Array, n: Array, k: Array, f
         if step == 0:
             first[:] = away
         # |multipliers| <= size where both roots of z^2 - s z + p are within the circle of that radius
-        size, trace, area = NEARBY.neutral, np.trace(slopes, axis1=1, axis2=2), np.linalg.det(slopes)
+        with np.errstate(invalid="ignore"):
+            size, trace, area = NEARBY.neutral, np.trace(slopes, axis1=1, axis2=2), np.linalg.det(slopes)
         attracts = (np.abs(area) <= size**2) & (np.abs(trace) * size <= size**2 + area)
         closed = away < NEARBY.closed
         attracting[left[closed]] = attracts[closed]
@@ -239,7 +236,7 @@ def nearby_orbits(model: Oscillator, tau: Array, v: Array, n: Array, k: Array, f
         if not left.size:
             break
         states[left] = aim[going]
-    n, k = _least(model, states, n, k, attracting, scale)
+    n, k = _least(model, states, (n, k), attracting, fast)
     return Nearby(states[:, 0], states[:, 1], n, k, attracting, first)
 
 
@@ -253,8 +250,8 @@ def _newton(residual: Array, slopes: Array) -> Array:
 
 
 def _return(model: Oscillator, states: Array, n: Array, k: Array) -> tuple[Array, Array]:
-    """G^n(tau, v) - (tau + k T, v) and D G^n; nan where a flight ends before."""
-    assert model.period is not None
+    """G^n(tau, v) - (tau + k T, v) and D G^n; nan where a flight ends before. Without a clock, those of v alone."""
+    phases = phases_of(model)
     at, speed = states.T.copy()
     slopes = np.broadcast_to(np.eye(2), (len(states), 2, 2)).copy()
     for count in range(int(n.max(initial=0))):
@@ -263,26 +260,39 @@ def _return(model: Oscillator, states: Array, n: Array, k: Array) -> tuple[Array
             slopes[going] = derivative(model, at[going], speed[going]).matrix @ slopes[going]
             ends = iterate(model, at[going], speed[going], 1)
             at[going], speed[going] = ends.tau, np.where(ends.status == 0, ends.v, np.nan)
-    return np.stack([at - states[:, 0] - k * as_float(model.period), speed - states[:, 1]], axis=-1), slopes
+    missed = np.stack([at - states[:, 0] - k * phases.unit, speed - states[:, 1]], axis=-1)
+    if not phases.clocked:
+        missed[:, 0], slopes[:, 0], slopes[:, 1, 0] = 0.0, 0.0, 0.0
+    return missed, slopes
+
+
+def neutral(model: Oscillator, n: Array, v: Array) -> Array:
+    """Whether cycles of n impacts of a model without a clock, from v, come to their neighbours no nearer in a turn.
+
+    Examples
+    --------
+    >>> neutral(Oscillator("x", "0", -1, 1), np.array([1]), np.array([0.5])).tolist()  # each orbit closes
+    [True]
+    """
+    slopes = _return(model, np.stack([0 * v, v], axis=1), n, 0 * n)[1]
+    return np.asarray(slopes[:, 1, 1] > 2 - NEARBY.neutral)
 
 
 def _least(
-    model: Oscillator, states: Array, n: Array, k: Array, attracting: Array, scale: Array
+    model: Oscillator, states: Array, numbers: tuple[Array, Array], attracting: Array, fast: float
 ) -> tuple[Array, Array]:
     """The least impacts and periods of the orbits that were found."""
-    assert model.period is not None
-    n, k = n.copy(), k.copy()
+    n, k = (column.copy() for column in numbers)
     at, speed = states.T.copy()
     several = np.flatnonzero(attracting & (n > 1))
     for count in range(1, int(n[several].max(initial=1))):
         ends = iterate(model, at[several], speed[several], 1)
         at[several], speed[several] = ends.tau, ends.v
         whole = (n[several] % count == 0) & (k[several] * count % n[several] == 0)
-        periods = k[several] * count // n[several]
-        off = np.stack([at[several] - states[several, 0] - periods * scale[0], speed[several] - states[several, 1]])
-        least = whole & (np.abs(off / scale[:, None]).max(axis=0) < NEARBY.same)
-        n[several[least]], k[several[least]] = count, periods[least]
-        several = several[~least & (n[several] > count)]
+        closes = apart((ends.tau, ends.v), states[several].T, phases_of(model), fast) < NEARBY.same
+        least = several[whole & closes]
+        n[least], k[least] = count, k[least] * count // n[least]
+        several = several[~(whole & closes) & (n[several] > count)]
         if not several.size:
             break
     return n, k

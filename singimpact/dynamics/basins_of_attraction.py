@@ -1,4 +1,4 @@
-"""Basins: the attractor of each state of a grid: an (n, k) orbit, repeated chatter, rest, chaos."""
+"""Basins: the attractor of each state of a grid: an (n, k) orbit, a limit cycle, repeated chatter, rest, chaos."""
 
 from collections.abc import Mapping
 from contextlib import nullcontext
@@ -13,24 +13,27 @@ from singimpact.algebra.numbers import Array, as_float
 from singimpact.case_pools import ThreadPool
 from singimpact.cases import sweep
 from singimpact.dynamics.attractors import (
-    AWAY,
-    CHAOS,
     CHATTER,
-    GONE,
-    OTHER,
+    CYCLE,
+    LEVEL,
     PLACES,
+    RESPONSE,
+    RESTING,
     SENSITIVE,
-    STUCK,
+    STILL,
     Attractor,
-    states_of,
+    neutral,
     within,
 )
+from singimpact.dynamics.behaviours import LongRun, behaviour
 from singimpact.dynamics.long_run import futures, lift_offs, settled
-from singimpact.dynamics.settling import SETTINGS as SETTLING, Study, classified, classify, parted, settles
-from singimpact.flights.horizons import horizon_of
+from singimpact.dynamics.phases import phases_of
+from singimpact.dynamics.settling import SETTINGS as SETTLING, Study, classify, parted, settles
+from singimpact.dynamics.synchrony import confirmed, responses
 from singimpact.flights.orbits import iterate
 from singimpact.inputs import refuse, whole
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.period import oscillates
 from singimpact.result import Result
 from singimpact.surface.curve import window_ends
 
@@ -48,55 +51,6 @@ class BasinSettings:
 
 
 SETTINGS = BasinSettings()
-KINDS = {
-    OTHER: "not decided",
-    CHAOS: "chaotic",
-    GONE: "never returns",
-    AWAY: "no impact",
-    STUCK: "unresolved",
-    SENSITIVE: "sensitive",
-}
-
-
-@dataclass(frozen=True)
-class LongRun:
-    """An attractor, or another long-term behaviour.
-
-    Attributes
-    ----------
-    kind : "orbit"; "chatter" (it completes again and again); "rest"; "chaotic" (no period within `impacts`, and
-        neighbours separate); "not decided" (no period, and they do not); "sensitive" (there are several attractors, or
-        chatter comes again after more than 60 impacts, and a neighbour 1e-15 away parts from the orbit: more than
-        doubles would decide); "no impact" (none within
-        `horizon`); "never returns" (proved); "unresolved" (a flight is: `osc.orbit` says which).
-    n, k : impacts (inf for chatter) in k periods, of an orbit or of chatter; 0 otherwise.
-    tau, v : the states of an orbit; of chatter the phase at which the mass lifts off, and 0.
-    """
-
-    kind: str
-    n: float
-    k: int
-    tau: Array
-    v: Array
-    impacts: int = 0
-    horizon: float = 0.0
-
-    @property
-    def name(self) -> str:
-        """The name in the legend of the picture, and what would decide a class that is not decided."""
-        if self.kind == "orbit":
-            return f"({self.n:.0f}, {self.k}) orbit"
-        count = f"{self.impacts:,}".replace(",", " ")
-        names = {
-            "chatter": f"(inf, {self.k}) chatter for ever",
-            "rest": "rest for ever",
-            "chaotic": f"no period in {count} impacts, neighbours separate",
-            "not decided": f"not settled in {count} impacts: larger impacts= may decide",
-            "sensitive": "rounding decides: neighbours 1e-15 away part",
-            "no impact": f"no impact within {self.horizon:.4g}",
-            "unresolved": "a flight is unresolved: osc.orbit says which",
-        }
-        return names.get(self.kind, self.kind)
 
 
 @dataclass(frozen=True)
@@ -115,6 +69,7 @@ class Basins(Result):
         "class": ("v", "tau"),
         "first_chatter_completes": ("v", "tau"),
     }
+    coordinates: ClassVar[tuple[str, str]] = ("tau", "v")
     model: Oscillator
     tau: Array
     v: Array
@@ -124,15 +79,22 @@ class Basins(Result):
 
     @property
     def classes(self) -> list[tuple[int, str, float]]:
-        """Code, name and share of the classes, the largest first; orbits of equal (n, k) are named with their v."""
+        """Code, name and share of the classes, the largest first.
+
+        Orbits of equal (n, k) are named with their v, and numbered where these are equal too.
+        """
         counts = np.bincount(self.codes.ravel(), minlength=len(self.attractors))
         order = np.argsort(-counts, kind="stable")
-        names = [each.name for each in self.attractors]
-        told = [
-            f"{name}, v to {each.v.max():.4g}" if names.count(name) > 1 and each.kind == "orbit" else name
-            for name, each in zip(names, self.attractors, strict=True)
+        plain = [run.name for run in self.attractors]
+        names = [
+            f"{name}, v to {run.v.max():.4g}" if plain.count(name) > 1 and run.v.size else name
+            for name, run in zip(plain, self.attractors, strict=True)
         ]
-        return [(int(i), told[i], float(counts[i]) / self.codes.size) for i in order]
+        numbered = [
+            f"{name}, number {names[: i + 1].count(name)}" if names.count(name) > 1 else name
+            for i, name in enumerate(names)
+        ]
+        return [(int(i), numbered[i], float(counts[i]) / self.codes.size) for i in order]
 
     @property
     def boundary(self) -> Array:
@@ -149,21 +111,47 @@ class Basins(Result):
         return f"Basins({self.tau.size} x {self.v.size} states: {shares}{more})"
 
     def as_dict(self) -> dict[str, Any]:
-        """The axes tau and v, for each state the class and whether the first chatter completes, 0 or 1; the shares."""
+        """The axes, for each state the class and whether the first chatter completes, 0 or 1; the shares."""
         names = np.array([name for _, name, _ in sorted(self.classes)], dtype=object)
-        return {
-            "tau": self.tau,
-            "v": self.v,
+        return dict(zip(self.coordinates, (self.tau, self.v), strict=True)) | {
             "class": names[self.codes],
             "first_chatter_completes": self.first_chatter_completes.astype(int),
             "classes": [{"class": name, "share": share} for _, name, share in self.classes],
         }
 
 
+@dataclass(frozen=True, repr=False)
+class StartBasins(Basins):
+    """The attractors of a grid of starts (x, x') of a model without t.
+
+    Attributes
+    ----------
+    x, xdot : the axes, also as `tau` and `v`; the others as in `Basins`.
+    """
+
+    array_axes: ClassVar[Mapping[str, tuple[str, ...]]] = {
+        "x": ("x",),
+        "xdot": ("xdot",),
+        "class": ("xdot", "x"),
+        "first_chatter_completes": ("xdot", "x"),
+    }
+    coordinates: ClassVar[tuple[str, str]] = ("x", "xdot")
+
+    @property
+    def x(self) -> Array:
+        """x of the starts."""
+        return self.tau
+
+    @property
+    def xdot(self) -> Array:
+        """x' of the starts."""
+        return self.v
+
+
 def basins(
     model: Oscillator,
     tau: Any = None,
-    v: Any = (0, 2),
+    v: Any = None,
     size: int = 600,
     executor: Any = None,
     output: Any = None,
@@ -173,13 +161,15 @@ def basins(
 
     Parameters
     ----------
-    model : periodic. tau, v : ends of the window; one period of tau when it is not given; v > 0 is looked at.
+    model : periodic, without t, or with sums of waves in t. tau, v : ends of the window; one period of tau when it is
+        not given, a turn of the fastest wave where there is none; v > 0 is looked at, from 0 to 2 when it is not given.
+        Of a model without t they are those of x and x'.
     size : states a side. executor, output : as for `sweep`, where some rows are a case; threads without it, for flights
         of arrays run side by side in one process. impacts : at most, of an orbit that does not settle.
 
     Raises
     ------
-    InputError : a model without a period, a window or a size that is none.
+    InputError : a model with t and without a period, a window or a size that is none.
 
     Examples
     --------
@@ -191,33 +181,60 @@ def basins(
     """
     if not isinstance(model, Oscillator):
         raise refuse("model", model, "an ImpactOscillator")
-    if model.period is None:
-        raise refuse("model", model, "one with a period: periodic orbits are counted in periods")
+    if model.period is None and not oscillates(model.force(), model.forcing()):
+        raise refuse("model", model, "one with a period, without t, or with sums of waves in t")
     if isinstance(size, bool) or not isinstance(size, int) or not 2 <= size <= 10_000:
         raise refuse("size", size, "an integer from 2 to 10000")
-    low, high = (0.0, as_float(model.period)) if tau is None else window_ends("tau", tau)
-    slow, fast = window_ends("v", v)
-    if slow < 0:
-        raise refuse("window of v", v, "two numbers >= 0, the lower end first")
+    (low, high), (slow, fast) = _window(model, tau, v)
     times = low + (np.arange(size) + 0.5) * (high - low) / size
     speeds = slow + (np.arange(size) + 0.5) * (fast - slow) / size
     iterate(model, times[:1], speeds[-1:], 1)  # compiled here once, and not by every worker of a pool
-    study = Study(model, lift_offs(model), fast, whole("impacts", impacts, 1, 10**7))
+    study = Study(model, lift_offs(model), max(-slow, fast), whole("impacts", impacts, 1, 10**7), high)
     tau, v = (coordinates.ravel() for coordinates in np.meshgrid(times, speeds))
     with ThreadPool() if executor is None else nullcontext(executor) as pool:
         table = _classes(study, (tau, v), size, pool, output)
-    flown, table = table[:, 3], table[:, :3]
-    first = table[:, 0] == CHATTER
+    table, flown, first = table[:, :3], table[:, 3], table[:, 4] > 0
     doubtful = set[tuple[float, ...]]()
-    follows = futures(model, study.phases, partial(_after_lift_off, study, doubtful))
-    for index in range(len(study.phases)):
-        table[first & (table[:, 1] == index)] = settled(follows, index, as_float(model.period))
+    follows = futures(model, study.lift_offs, partial(_after_lift_off, study, doubtful))
+    for index in range(len(study.lift_offs)):
+        table[first & (table[:, 1] == index)] = settled(follows, index, study.phases.unit)
     if _several(study, table[settles(table)]):
         table[[row in doubtful for row in map(tuple, table.tolist())]] = SENSITIVE, 0.0, 0.0
+    if not study.phases.repeats:
+        table = confirmed(study, table)
     late = _open_to_rounding(study, table, flown)
     table[late[parted(study, tau[late], v[late], flown[late])]] = SENSITIVE, 0.0, 0.0
+    if not study.phases.clocked:
+        cycles = np.flatnonzero(table[:, 0] >= PLACES)
+        table[cycles[_level(study, table[cycles])]] = LEVEL, 0.0, 0.0
     attractors, codes = _named(study, table)
-    return Basins(model, times, speeds, attractors, codes.reshape(size, size), first.reshape(size, size))
+    return (Basins if study.phases.clocked else StartBasins)(
+        model, times, speeds, attractors, codes.reshape(size, size), first.reshape(size, size)
+    )
+
+
+def _window(model: Oscillator, tau: Any, v: Any) -> tuple[tuple[float, float], tuple[float, float]]:
+    """The ends of both axes of a window."""
+    if not phases_of(model).clocked:
+        wall = as_float(model.clearance)
+        low, high = (wall, wall + 2 * max(abs(wall), 1.0)) if tau is None else window_ends("x", tau)
+        if low < wall:
+            raise refuse("window of x", tau, f"two numbers from the wall on, x >= {model.clearance}")
+        return (low, high), window_ends("xdot", (-2, 2) if v is None else v)
+    ends = (0.0, phases_of(model).unit) if tau is None else window_ends("tau", tau)
+    slow, fast = window_ends("v", (0, 2) if v is None else v)
+    if slow < 0:
+        raise refuse("window of v", v, "two numbers >= 0, the lower end first")
+    return ends, (slow, fast)
+
+
+def classified(
+    fields: Mapping[str, Any], study: tuple[tuple[float, ...], float, int, float], states: tuple[tuple[float, ...], ...]
+) -> Array:
+    """`classify` of some states. A module-level function, so that it can be pickled."""
+    several = Study(Oscillator(**fields), *study)
+    tau, v = np.array(states[0]), np.array(states[1])
+    return (classify if several.phases.repeats else responses)(several, tau, v)
 
 
 def _classes(study: Study, states: tuple[Array, Array], size: int, pool: Any, output: Any) -> Array:
@@ -228,14 +245,14 @@ def _classes(study: Study, states: tuple[Array, Array], size: int, pool: Any, ou
     rows = [n for n in range(1, size + 1) if size % n == 0]
     long = size * min(rows, key=lambda n: abs(log(n * size / wanted)))
     cases = [(tuple(tau[i : i + long].tolist()), tuple(v[i : i + long].tolist())) for i in range(0, tau.size, long)]
-    work = partial(classified, dict(study.model.to_dict()), (study.phases, study.fast, study.impacts))
+    work = partial(classified, dict(study.model.to_dict()), (study.lift_offs, study.fast, study.impacts, study.start))
     return np.concatenate([np.asarray(part) for part in sweep(work, cases, pool, output)])
 
 
 def _open_to_rounding(study: Study, table: Array, flown: Array) -> Array:
     """Indices of states that settle late, where there is more than one attractor to settle on."""
     settled = settles(table)
-    if not _several(study, table[settled]):
+    if not (study.phases.clocked and study.phases.repeats) or not _several(study, table[settled]):
         return np.zeros(0, dtype=np.int64)
     return np.flatnonzero(settled & (flown > SETTLING.sensitive))
 
@@ -261,22 +278,26 @@ def _after_lift_off(study: Study, doubtful: set[tuple[float, ...]], tau: Array, 
 
 def _named(study: Study, rows: Array) -> tuple[tuple[LongRun, ...], Array]:
     """The classes that occur, and the index of each row among them; rows near one orbit are one class."""
-    model, phases = study.model, study.phases
     classes, codes, left = list[LongRun](), np.full(len(rows), -1), np.ones(len(rows), dtype=bool)
-    none, horizon = np.zeros(0), horizon_of(model, None)
     while left.any():
-        code, tau, v = rows[np.flatnonzero(left)[0]].tolist()
+        first = np.flatnonzero(left)[0]
+        code, tau, v = rows[first].tolist()
+        classes.append(behaviour(study, rows[first]))
         same = left & (rows[:, 0] == code)
         if code >= PLACES:
-            orbit = Attractor(int(code), *states_of(model, int(code), tau, v), SETTINGS.same)
-            same &= within(orbit, model, rows[:, 1], rows[:, 2], study.fast, SETTINGS.same)
-            same[np.flatnonzero(left)[0]] = True
-            classes.append(LongRun("orbit", int(code) // PLACES, int(code) % PLACES, orbit.tau, orbit.v))
-        elif code == CHATTER:
-            same &= rows[:, 1] == tau
-            at = np.array([phases[int(tau)]]) if tau >= 0 else none
-            classes.append(LongRun("chatter" if tau >= 0 else "rest", np.inf, int(v), at, 0 * at))
-        else:
-            classes.append(LongRun(KINDS[int(code)], 0, 0, none, none, study.impacts, horizon))
+            orbit = Attractor(int(code), classes[-1].tau, classes[-1].v, SETTINGS.same)
+            same &= within(orbit, study.model, rows[:, 1], rows[:, 2], study.fast, SETTINGS.same)
+            same[first] = True
+        elif code in (CYCLE, STILL):
+            same &= np.abs(rows[:, 1] - tau) <= SETTINGS.same * tau
+            same &= np.abs(rows[:, 2] - v) <= SETTINGS.same * max(v, abs(as_float(study.model.clearance)))
+        elif code in (CHATTER, RESPONSE, RESTING):
+            same &= (rows[:, 1] == tau) & ((code == CHATTER) | (rows[:, 2] == v))
         codes[same], left = len(classes) - 1, left & ~same
     return tuple(classes), codes
+
+
+def _level(study: Study, rows: Array) -> Array:
+    """Whether rows of limit cycles are of cycles that do not attract their neighbours."""
+    several, which = np.unique(rows[:, [0, 2]], axis=0, return_inverse=True)
+    return neutral(study.model, several[:, 0].astype(np.int64) // PLACES, several[:, 1])[which.ravel()]

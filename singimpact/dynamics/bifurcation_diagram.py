@@ -12,12 +12,34 @@ from singimpact.algebra.expressions import names_in
 from singimpact.algebra.numbers import Array, as_float
 from singimpact.case_pools import ThreadPool
 from singimpact.cases import sweep
-from singimpact.dynamics.attractors import apart, nearby_orbits
+from singimpact.dynamics.attractors import (
+    AWAY,
+    CHAOS,
+    CHATTER,
+    CYCLE,
+    GONE,
+    LEVEL,
+    OTHER,
+    PLACES,
+    RESPONSE,
+    RESTING,
+    STILL,
+    STUCK,
+    apart,
+    nearby_orbits,
+    neutral,
+)
+from singimpact.dynamics.behaviours import LongRun, behaviour
+from singimpact.dynamics.free_motion import free_fates
+from singimpact.dynamics.long_run import chaotic
 from singimpact.dynamics.orbit import Orbit, dropped_orbit, orbit
+from singimpact.dynamics.phases import Times, phases_of
+from singimpact.dynamics.settling import Study
+from singimpact.dynamics.synchrony import meets
 from singimpact.inputs import refuse, require_memory
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import with_number
-from singimpact.oscillator.period import moving_in_time
+from singimpact.oscillator.period import moving_in_time, oscillates
 from singimpact.result import Result
 from singimpact.surface.curve import window_ends
 
@@ -39,6 +61,7 @@ class BifurcationSettings:
 
 
 SETTINGS = BifurcationSettings()
+Row = tuple[float, float, float]
 WAYS = {"up": ("up",), "down": ("down",), "both": ("up", "down")}
 
 
@@ -49,19 +72,21 @@ class Bifurcation(Result):
     Attributes
     ----------
     over : the parameter. values : its values in the order of computation. events : shape (values, kept,
-        3): phase, v, 1 where chatter ended; nan where an orbit had fewer. Of a model without t the time since the
-        event before stands in place of the phase.
+        3): phase, v, 1 where chatter ended; nan where an orbit had fewer. Without a period the time since
+        the event before stands in place of the phase.
     direction : "up", "down" or "both" where each orbit starts from the last state of the one before: with "both" the
         values go up, then down. Empty where each starts from one state.
     periods : of the forcing at each of the values, nan without one. settled : bool of each value: the events are those
         of an attracting orbit or repeat, or no impact comes before the horizon; False where a flight is unresolved.
     settle : impacts after which an orbit that has not settled was left.
+    attractors : of each value, with the names that basins have.
     """
 
     array_axes: ClassVar[Mapping[str, tuple[str, ...]]] = {
         "values": ("value",),
         "periods": ("value",),
         "settled": ("value",),
+        "class": ("value",),
         "events": ("value", "event", "phase_v_ended"),
     }
     over: str
@@ -71,6 +96,7 @@ class Bifurcation(Result):
     periods: Array = field(default_factory=lambda: np.ones(1), repr=False)
     settled: Array = field(default_factory=lambda: np.ones(1, dtype=bool), repr=False)
     settle: int = 0
+    attractors: tuple[LongRun, ...] = field(default=(), repr=False)
 
     def __repr__(self) -> str:
         count, kept = self.events.shape[:2]
@@ -82,9 +108,11 @@ class Bifurcation(Result):
 
     def as_dict(self) -> dict[str, Any]:
         """The number that moves, its values, and for each value phase, v, 1 for an end of chatter, of every event."""
-        return {"over": self.over, "direction": self.direction, "settle": self.settle} | {
-            name: getattr(self, name) for name in ("values", "events", "periods", "settled")
-        }
+        return (
+            {"over": self.over, "direction": self.direction, "settle": self.settle}
+            | {name: getattr(self, name) for name in ("values", "events", "periods", "settled")}
+            | {"class": np.array([each.name for each in self.attractors], dtype=object)}
+        )
 
     def table(self) -> dict[str, Array]:
         """One row for each event: value, phase, v, and 1 for an end of chatter."""
@@ -129,8 +157,8 @@ def bifurcation(
     if not isinstance(model, Oscillator):
         raise refuse("model", model, "an ImpactOscillator")
     model = with_number(model, over)
-    if model.period is None and not model.autonomous:
-        raise refuse("model", model, "one with a period, or without t: phases are shown")
+    if model.period is None and not oscillates(model.force(), model.forcing()):
+        raise refuse("model", model, "one with a period, without t, or with sums of waves in t")
     for name, value, least in (("points", points, 2), ("impacts", impacts, 1), ("kept", kept, 1)):
         if isinstance(value, bool) or not isinstance(value, int) or value < least:
             raise refuse(name, value, f"a whole number from {least}")
@@ -149,17 +177,26 @@ def bifurcation(
             for column in (values, periods)
         )
         events = _carried(model, over, values, start, (impacts, kept, settle))
-        return _made(over, values, events, direction, periods, max(settle, impacts))
+        return _result((model, over, values), events, direction, periods, max(settle, impacts))
     ask = partial(settled, dict(model.to_dict()), over, tuple(map(str, start)), (impacts, kept, settle))
     few = sweeping.get("executor") is None and points * impacts <= FEW
     with ThreadPool(1) if few else nullcontext(sweeping.get("executor")) as pool:
         events = sweep(ask, values.tolist(), **(sweeping | {"executor": pool}))
-    return _made(over, values, np.array(events), "", periods, max(settle, impacts))
+    return _result((model, over, values), np.array(events), "", periods, max(settle, impacts))
 
 
-def _made(over: str, values: Array, events: Array, direction: str, periods: Array, settle: int) -> Bifurcation:
-    """The result; the last row of each value's events says whether it has settled."""
-    return Bifurcation(over, values, events[:, :-1], direction, periods, events[:, -1, 0] == 1, settle)
+def _result(
+    numbers: tuple[Oscillator, str, Array], events: Array, direction: str, periods: Array, settle: int
+) -> Bifurcation:
+    """The result for a model, the number that moves and its values; the last two rows of each value's events are not
+    events but whether it has settled, and the row of its class.
+    """
+    model, over, values = numbers
+    models = [model.replace(**{over: value}) for value in values.tolist()]
+    runs = tuple(
+        behaviour(Study(moved, (), 1.0, settle), row) for moved, row in zip(models, events[:, -1], strict=True)
+    )
+    return Bifurcation(over, values, events[:, :-2], direction, periods, events[:, -2, 0] == 1, settle, runs)
 
 
 def _periods(model: Oscillator, over: str, values: Array) -> Array:
@@ -178,74 +215,98 @@ def settled(
     return _last_events(*_followed(orbit(model, start[0], start[1], flown[0]), flown), flown)
 
 
-def _followed(first: Orbit, flown: tuple[int, int, int]) -> tuple[Orbit, bool]:
-    """An orbit, or its continuation until the events repeat; and whether they do.
+def _followed(first: Orbit, flown: tuple[int, int, int]) -> tuple[Orbit, Row]:
+    """An orbit, or its continuation until the events repeat; and the row of its class, as of `classify`.
 
     Parameters
     ----------
     flown : impacts of the first orbit, events of the end that are shown, impacts at most.
     """
     last, count, block = first, flown[0], flown[0]
-    while not (repeats := _repeats(last)) and not _is_unresolved(last) and count < flown[2]:
+    while (row := _ending(last)) is None and count < flown[2]:
         block = min(2 * block, flown[2] - count)
         last = orbit(last.oscillator, _phase(last, float(last.tau[-1])), float(last.v[-1]), block)
         count += block
-    return last, repeats
+    if row is None:
+        tau, v = np.array([_phase(last, float(last.tau[-1]))]), last.v[-1:]
+        grows = last.kind[-1] == "impact" and chaotic(last.oscillator, tau, v, max(float(last.v.max()), 1e-300))[0]
+        row = (CHAOS if grows else OTHER, 0.0, 0.0)
+    return last, row
 
 
 def _phase(flown_orbit: Orbit, time: float) -> float:
-    """A time within a period; 0 where the model has no clock."""
-    period = flown_orbit.oscillator.period
-    return 0.0 if period is None else float(np.mod(time, as_float(period)))
+    """A time within a period; 0 where the model has no clock, and the time where nothing repeats."""
+    phases = phases_of(flown_orbit.oscillator)
+    return float(np.mod(time, phases.unit) if phases.clocked and phases.repeats else phases.of(np.array(time)))
 
 
-def _is_unresolved(flown_orbit: Orbit) -> bool:
-    return bool(flown_orbit.phases) and flown_orbit.phases[-1][0] == "unresolved"
-
-
-def _repeats(flown_orbit: Orbit) -> bool:
-    """Whether the last events are those of a period before, or no other follows."""
-    if flown_orbit.phases and flown_orbit.phases[-1][0] == "no_return":
-        return True
-    if _is_unresolved(flown_orbit):
-        return False
-    if flown_orbit.phases and flown_orbit.phases[-1][0] == "sticking" and not np.isfinite(flown_orbit.phases[-1][2]):
-        return True
+def _ending(flown_orbit: Orbit) -> Row | None:
+    """The row of the class, where the last events are those of a period before, or no other follows."""
+    last = flown_orbit.phases[-1][0] if flown_orbit.phases else ""
+    if last in ("no_return", "unresolved"):
+        if flown_orbit.oscillator.autonomous:
+            height = flown_orbit.height if flown_orbit.tau.size == 1 else 0.0
+            row = free_fates(flown_orbit.oscillator, np.array([height]), flown_orbit.v[-1:])[0]
+            if np.isfinite(row[0]) and row[0] not in (AWAY, STUCK):
+                return tuple(row.tolist())
+        if last == "unresolved":
+            return (STUCK, 0.0, 0.0)
+        return (GONE if np.isinf(flown_orbit.end) else AWAY, 0.0, 0.0)
+    if last == "sticking" and not np.isfinite(flown_orbit.phases[-1][2]):
+        return (CHATTER, -1.0, 0.0)
     shown = np.isin(flown_orbit.kind, ("impact", "graze", "complete"))
     tau, v = flown_orbit.tau[shown], flown_orbit.v[shown]
-    if flown_orbit.oscillator.autonomous:
-        return _is_cycle(np.diff(tau), v[1:])
-    period, fast = as_float(flown_orbit.oscillator.period), max(float(v.max(initial=0.0)), 1e-300)  # type: ignore[arg-type]
+    phases, fast = phases_of(flown_orbit.oscillator), max(float(v.max(initial=0.0)), 1e-300)
+    if not phases.repeats:
+        rests = np.count_nonzero(flown_orbit.kind == "release") > 1
+        return (RESTING, 0.0, 0.0) if rests else _response(flown_orbit, fast)
+    if not phases.clocked:
+        n = _cycle(np.diff(tau), v[1:])
+        return _orbit(flown_orbit, n, fast) if n else None
     for n in range(1, min(SETTINGS.period, tau.size // 2) + 1):
-        last, before = slice(-n, None), slice(-2 * n, -n)
-        if apart((tau[last], v[last]), (tau[before], v[before]), period, fast).max() < SETTINGS.close:
-            only_impacts = bool((flown_orbit.kind[flown_orbit.tau >= tau[-2 * n]] == "impact").all())
-            return not only_impacts or _is_periodic(flown_orbit, n, period, fast)
-    return False
+        last_ones, before = slice(-n, None), slice(-2 * n, -n)
+        if apart((tau[last_ones], v[last_ones]), (tau[before], v[before]), phases, fast).max() < SETTINGS.close:
+            if not (flown_orbit.kind[flown_orbit.tau >= tau[-2 * n]] == "impact").all():
+                return (CHATTER, 0.0, float(phases.periods(tau[-1] - tau[-1 - n])))
+            return _orbit(flown_orbit, n, fast)
+    return None
 
 
-def _is_cycle(spans: Array, v: Array) -> bool:
-    """Whether the last events of a model without a clock are within `close` of a limit cycle.
+def _response(flown_orbit: Orbit, fast: float) -> Row | None:
+    """The row of an orbit under a forcing that never repeats, where a neighbour comes to it."""
+    tau, v = float(flown_orbit.tau[-1]), float(flown_orbit.v[-1])
+    if v == 0:
+        return None
+    return (RESPONSE, tau, v) if meets(Study(flown_orbit.oscillator, (), fast, 1), tau, v) else None
+
+
+def _cycle(spans: Array, v: Array) -> int:
+    """Events of the limit cycle that the last events of a model without a clock are within `close` of, or 0.
 
     The distance that is left is that of a geometric sequence with the ratio of the last two changes.
     """
-    sizes = 4 * max(float(spans.max(initial=0.0)), 1e-300), max(float(v.max(initial=0.0)), 1e-300)
+    sizes = Times(max(float(spans.max(initial=0.0)), 1e-300)), max(float(v.max(initial=0.0)), 1e-300)
     for n in range(1, min(SETTINGS.period, v.size // 3) + 1):
         parts = [(spans[v.size - k * n :][:n], v[v.size - k * n :][:n]) for k in (1, 2, 3)]
         last, before = (apart(parts[i], parts[i + 1], *sizes).max() for i in (0, 1))
         if last < SETTINGS.close and (last < 1e-14 or last * last < SETTINGS.close * max(before - last, 0.0)):
-            return True
-    return False
+            return n
+    return 0
 
 
-def _is_periodic(flown_orbit: Orbit, n: int, period: float, fast: float) -> bool:
-    """Whether the last impact is one of an attracting orbit of n impacts, and not on its way past or towards one."""
+def _orbit(flown_orbit: Orbit, n: int, fast: float) -> Row | None:
+    """The row of an attracting orbit of n impacts with the last impact, which is not on its way past or towards one."""
     end, v = flown_orbit.tau[flown_orbit.kind == "impact"], flown_orbit.v[flown_orbit.kind == "impact"]
-    turns = np.rint((end[-1:] - end[-1 - n]) / period).astype(np.int64)
-    tau = np.mod(end[-1:], period)
+    phases = phases_of(flown_orbit.oscillator)
+    turns, tau = phases.periods(end[-1:] - end[-1 - n]).astype(np.int64), phases.of(end[-1:])
     beside = nearby_orbits(flown_orbit.oscillator, tau, v[-1:], np.array([n]), turns, fast)
-    away = apart((beside.tau, beside.v), (tau, v[-1]), period, fast)
-    return bool(np.where(beside.found, away < SETTINGS.close, beside.returned)[0])
+    away = apart((beside.tau, beside.v), (tau, v[-1]), phases, fast)
+    if not np.where(beside.found, away < SETTINGS.close, beside.returned)[0]:
+        return None
+    n, k = (int(beside.n[0]), int(beside.k[0])) if beside.found[0] else (n, int(turns[0]))
+    if not phases.clocked and neutral(flown_orbit.oscillator, np.array([n]), v[-1:])[0]:
+        return (LEVEL, 0.0, 0.0)
+    return (n * PLACES + k, float(tau[0]), float(v[-1]))
 
 
 def _carried(model: Oscillator, over: str, values: Array, start: Any, flown: tuple[int, int, int]) -> Array:
@@ -257,24 +318,25 @@ def _carried(model: Oscillator, over: str, values: Array, start: Any, flown: tup
     """
     rows: list[Array] = []
     last: Orbit | None = None
+    row: Row = (OTHER, 0.0, 0.0)
     for value in values.tolist():
         moved = model.replace(**{over: value})
-        first = orbit(moved, start[0], start[1], flown[0]) if last is None else _continued(moved, last, flown[0])
-        last, repeats = _followed(first, flown)
-        rows.append(_last_events(last, repeats, flown))
+        first = orbit(moved, start[0], start[1], flown[0]) if last is None else _continued(moved, last, row, flown[0])
+        last, row = _followed(first, flown)
+        rows.append(_last_events(last, row, flown))
     return np.array(rows)
 
 
-def _continued(moved: Oscillator, last: Orbit, impacts: int) -> Orbit:
+def _continued(moved: Oscillator, last: Orbit, row: Row, impacts: int) -> Orbit:
     """The orbit of a model from the last state of another one; the phase within the period is kept."""
-    if moved.autonomous:
-        period = before = 1.0
-    else:
-        assert moved.period is not None and last.oscillator.period is not None  # noqa: PT018
-        period, before = as_float(moved.period), as_float(last.oscillator.period)
+    if row[0] in (CYCLE, STILL):  # from the least x of the cycle, or the rest
+        height = row[2] if row[0] == CYCLE else row[1]
+        x = max(as_float(last.oscillator.clearance) + height, as_float(moved.clearance))
+        return dropped_orbit(moved, (x, 0.0, 0.0), impacts)
+    period, before = phases_of(moved).unit, phases_of(last.oscillator).unit
     away = bool(last.phases) and last.phases[-1][0] == "no_return"
     time = min(last.end, float(last.tau[-1]) + SETTINGS.free * before) if away else float(last.tau[-1])
-    tau = float(np.mod(time, before)) / before * period
+    tau = _phase(last, time) / before * period
     if not away:
         return orbit(moved, tau, float(last.v[-1]), impacts)
     # off the wall: the motion without impact is carried on
@@ -283,17 +345,20 @@ def _continued(moved: Oscillator, last: Orbit, impacts: int) -> Orbit:
     return dropped_orbit(moved, (x, float(state.xdot), tau), impacts)
 
 
-def _last_events(flown_orbit: Orbit, repeats: bool, flown: tuple[int, int, int]) -> Array:
+def _last_events(flown_orbit: Orbit, row: Row, flown: tuple[int, int, int]) -> Array:
     """Impacts, grazes and ends of chatter (1 in the last column) of the end of an orbit, and whether it has settled.
 
-    Shape (kept + 1, 3): the first number of the last row is 1 where the events repeat.
+    Shape (kept + 2, 3): the first number of the last row but one is 1 where it has; the last row is that of its class.
     """
+    repeats = row[0] not in (OTHER, CHAOS, STUCK)
     shown, count = np.isin(flown_orbit.kind, ("impact", "graze", "complete")), flown[1]
     rows = np.stack([flown_orbit.tau, flown_orbit.v, flown_orbit.kind == "complete"], axis=1)[shown]
-    if flown_orbit.oscillator.autonomous:
+    if flown_orbit.oscillator.period is None:
         rows[:, 0] = np.diff(rows[:, 0], prepend=flown_orbit.tau[0])
     last = rows[max(flown[0] - count, 0) :][-count:]
+    if row[0] in (CYCLE, STILL):  # the impacts before belong to the transient
+        last = rows = rows[:0]
     events = last if len(last) else rows[-1:]  # one that has come to rest for ever shows only that
     if flown_orbit.oscillator.period is not None:
         events[:, 0] = np.mod(events[:, 0], as_float(flown_orbit.oscillator.period))
-    return np.vstack([events, np.full((count - len(events), 3), np.nan), [[float(repeats), 0.0, 0.0]]])
+    return np.vstack([events, np.full((count - len(events), 3), np.nan), [[float(repeats), 0.0, 0.0], row]])

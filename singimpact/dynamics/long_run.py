@@ -14,6 +14,7 @@ from singimpact.contact.points import tangency_points
 from singimpact.dynamics.attractors import AWAY, CHATTER, GONE, OTHER
 from singimpact.dynamics.lift_off import release
 from singimpact.dynamics.orbit import orbit
+from singimpact.dynamics.phases import phases_of
 from singimpact.flights.orbits import iterate
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration
@@ -54,6 +55,8 @@ def lift_offs(model: Oscillator) -> tuple[float, ...]:
     >>> [round(tau, 6) for tau in lift_offs(Oscillator("x", "cos(2*t)", "0.3", "1/2"))]
     [2.508541]
     """
+    if model.period is None:
+        return ()
     return tuple(point.tau for point in tangency_points(model) if point.kind == "gamma")
 
 
@@ -126,49 +129,53 @@ def settled(motions: list[Future], start: int, period: float) -> tuple[float, ..
 
 
 def chaotic(model: Oscillator, tau: Array, v: Array, fast: float) -> Array:
-    """Whether orbits have a Lyapunov exponent above 0: the mean growth of a small distance, with its standard error.
+    """Whether orbits have a Lyapunov exponent above 0."""
+    return np.asarray(growth(model, tau, v, fast) > 0)
+
+
+def growth(model: Oscillator, tau: Array, v: Array, fast: float) -> Array:
+    """The signs of the Lyapunov exponents of orbits, 0 where it is open: of the mean growth of a small distance.
 
     Examples
     --------
     >>> settled = Oscillator("x", "cos(2*t)", "0.3", "1/2")
-    >>> chaotic(settled, np.array([0.5]), np.array([1.0]), 1.0).tolist()
-    [False]
+    >>> growth(settled, np.array([0.5]), np.array([1.0]), 1.0).tolist()
+    [-1]
     """
-    assert model.period is not None
-    period, above = as_float(model.period), np.zeros(tau.size, dtype=bool)
+    unit, signs = phases_of(model).unit, np.zeros(tau.size, dtype=np.int64)
     left, first = np.arange(tau.size), (np.array(tau), np.array(v))
-    second = first[0] + SETTINGS.apart * period, first[1] * (1 + SETTINGS.apart)
+    second = first[0] + SETTINGS.apart * unit, first[1] * (1 + SETTINGS.apart)
     growth = np.zeros((0, tau.size))
     while left.size and len(growth) < SETTINGS.rounds * SETTINGS.extended:
         rows = []
         for _ in range(SETTINGS.rounds):
-            first, second, row = _grown(model, first, second, period, fast)
+            first, second, row = _grown(model, first, second, fast)
             rows.append(row)
         growth = np.concatenate([growth, rows])
         # the first quarter, in which the distance turns towards the direction that grows, is left out
         late = growth[len(growth) // 4 :] / SETTINGS.block
         mean, error = late.mean(axis=0), 3 * late.std(axis=0) / np.sqrt(len(late))
-        above[left[mean > np.maximum(SETTINGS.least, error)]] = True
+        for sign in (1, -1):
+            signs[left[sign * mean > np.maximum(SETTINGS.least, error)]] = sign
         undecided = (mean <= error) & (mean + error > SETTINGS.least)  # nan where a flight does not come back
         left, growth = left[undecided], growth[:, undecided]
         first, second = ((states[0][undecided], states[1][undecided]) for states in (first, second))
-    return above
+    return signs
 
 
 def _grown(
-    model: Oscillator, first: tuple[Array, Array], second: tuple[Array, Array], period: float, fast: float
+    model: Oscillator, first: tuple[Array, Array], second: tuple[Array, Array], fast: float
 ) -> tuple[tuple[Array, Array], tuple[Array, Array], Array]:
     """States and their neighbours after some impacts, neighbours set back to `apart`, and the growth of the distance.
 
     Benettin et al. (1980): the distance is measured, then set back along the same direction.
     """
-    ends = [iterate(model, *states, SETTINGS.block) for states in (first, second)]
-    away = np.stack([(ends[1].tau - ends[0].tau) / period, (ends[1].v - ends[0].v) / fast])
-    away[0] -= np.rint(away[0])
+    ends, phases = [iterate(model, *states, SETTINGS.block) for states in (first, second)], phases_of(model)
+    away = np.stack([phases.off(ends[1].tau, ends[0].tau), (ends[1].v - ends[0].v) / fast])
     with np.errstate(all="ignore"):
         size = np.hypot(*away)
         row = np.log(np.maximum(size, 1e-16) / SETTINGS.apart)
         step = away * np.where(size > 1e-16, SETTINGS.apart / size, 1.0)
     row[(ends[0].status != 0) | (ends[1].status != 0)] = np.nan
-    tau, v = ends[0].tau - period * np.floor(ends[0].tau / period), ends[0].v
-    return (tau, v), (tau + step[0] * period, np.maximum(v + step[1] * fast, 0.5 * v)), row
+    tau, v = phases.of(ends[0].tau), ends[0].v
+    return (tau, v), (tau + step[0] * phases.unit, np.maximum(v + step[1] * fast, 0.5 * v)), row

@@ -12,10 +12,11 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.numbers import Array, as_float, compare
+from singimpact.algebra.numbers import Array, compare
 from singimpact.dynamics.attractors import apart
 from singimpact.dynamics.chatter import ENDING, chatter_limit
 from singimpact.dynamics.lift_off import periods_between, release
+from singimpact.dynamics.phases import phases_of
 from singimpact.dynamics.remaining import chatter_completes
 from singimpact.flights.compiled_model import compiled_model
 from singimpact.flights.derivative import derivative, log_determinant
@@ -225,7 +226,7 @@ class _Run:
     def _repeats(self) -> bool:
         """Whether the state comes back after some impacts."""
         plastic = self.osc.plastic
-        if not (self.v > 0 or plastic) or not self.before or self.osc.period is None:
+        if not (self.v > 0 or plastic) or not self.before:
             return False
         ahead: Ends | Segment
         if plastic:
@@ -233,7 +234,7 @@ class _Run:
         else:
             ahead = orbit_segment(self.osc, self.tau, self.v, SETTINGS.period)
         last = slice(-SETTINGS.period, None)
-        away = apart((ahead.tau[last], ahead.v[last]), (self.tau, self.v), as_float(self.osc.period), self.v or 1.0)
+        away = apart((ahead.tau[last], ahead.v[last]), (self.tau, self.v), phases_of(self.osc), self.v or 1.0)
         return bool((away < SETTINGS.close).any())
 
     def fly(self, most: int, keep: bool) -> None:

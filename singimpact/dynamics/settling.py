@@ -5,10 +5,8 @@ Chaotic transients are long where impacts lose little: x'' + x = cos 3.3t with c
 the slowest plain chatter would be over is followed on, and compared with the attractors found meanwhile.
 """
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from math import ceil, log
-from typing import Any
 
 import numpy as np
 
@@ -28,8 +26,12 @@ from singimpact.dynamics.attractors import (
     closing_orbits,
     new_attractors,
 )
+from singimpact.dynamics.free_motion import free_fates
 from singimpact.dynamics.long_run import chaotic, next_lift_off
+from singimpact.dynamics.phases import Phases, phases_of
 from singimpact.dynamics.remaining import rest_after
+from singimpact.flights.impact_map import impact_map
+from singimpact.flights.off_wall import launch
 from singimpact.flights.orbits import iterate
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration
@@ -65,6 +67,8 @@ class SettlingSettings:
     neighbour: float = 1e-15
     watched: int = 10
     parted: float = 1e-2
+    # without a clock: turns of the fastest motion after which a flight is looked at as one without impact
+    free: int = 32
 
 
 SETTINGS = SettlingSettings()
@@ -72,35 +76,36 @@ SETTINGS = SettlingSettings()
 
 @dataclass(frozen=True)
 class Study:
-    """The data of a study of states: the model, the phases at which the mass lifts off, the fastest launch, impacts."""
+    """The data of a study of states: the model, the phases at which the mass lifts off, the fastest launch, impacts.
+
+    States are (tau, v) at the wall, of which the latest tau is `start`; those of a model without a clock are (x, x').
+    """
 
     model: Oscillator
-    phases: tuple[float, ...]
+    lift_offs: tuple[float, ...]
     fast: float
     impacts: int
+    start: float = 0.0
 
     @property
-    def period(self) -> float:
-        """The period of the forcing."""
-        assert self.model.period is not None
-        return as_float(self.model.period)
+    def phases(self) -> Phases:
+        """The phases in which its states are compared."""
+        return phases_of(self.model)
 
-
-def classified(
-    fields: Mapping[str, Any], study: tuple[tuple[float, ...], float, int], states: tuple[tuple[float, ...], ...]
-) -> Array:
-    """`classify` of some states (tau, v). A module-level function, so that it can be pickled."""
-    return classify(Study(Oscillator(**fields), *study), np.array(states[0]), np.array(states[1]))
+    @property
+    def horizon(self) -> float | None:
+        """Time after which a flight of a model without a clock is looked at; None for the package default."""
+        return None if self.phases.clocked else SETTINGS.free * self.phases.unit
 
 
 def classify(study: Study, tau: Array, v: Array) -> Array:
-    """Rows (code, tau, v, impacts), shape (n, 4): of a periodic orbit n * PLACES + k and one of its states; CHATTER and
-    the place of the lift-off that follows; else one of the other codes of `attractors`. Impacts are those flown before
-    the class was decided.
+    """Rows (code, tau, v, impacts, rests), shape (n, 5): of a periodic orbit n * PLACES + k and one of its states;
+    CHATTER and the place of the lift-off that follows; else one of the other codes of `attractors`. Impacts are those
+    flown before the class was decided; rests is 1 where the first chatter completes.
     """
     run = _Run(study, tau, v)
     run.settle()
-    return np.column_stack([run.rows, run.flown])
+    return np.column_stack([run.rows, run.flown, run.rows[:, 0] == CHATTER])
 
 
 def settles(rows: Array) -> Array:
@@ -117,13 +122,13 @@ def parted(study: Study, tau: Array, v: Array, impacts: Array) -> Array:
     """
     separated, left = np.zeros(tau.size, dtype=bool), np.arange(tau.size)
     sides = np.array([[0.0], [SETTINGS.neighbour]])
-    at, speed, count = tau + sides * study.period, v * (1 + sides), 0
+    at, speed, count = tau + sides * study.phases.unit, v * (1 + sides), 0
     while left.size:
         ends = iterate(study.model, at[:, left], speed[:, left], SETTINGS.watched, SETTINGS.tolerance)
         count += SETTINGS.watched
-        at[:, left], speed[:, left] = ends.tau - study.period * np.floor(ends.tau / study.period), ends.v
+        at[:, left], speed[:, left] = study.phases.of(ends.tau), ends.v
         one, other = ((at[side, left], speed[side, left]) for side in (0, 1))
-        distance = apart(one, other, study.period, study.fast)
+        distance = apart(one, other, study.phases, study.fast)
         flying = (ends.status == 0).all(axis=0)
         # one ends its flights where the other goes on
         torn = (ends.status[0] == 0) != (ends.status[1] == 0)
@@ -145,11 +150,31 @@ class _Run:
 
     def settle(self) -> None:
         """Follow all states to a class."""
+        if not self.study.phases.clocked:
+            self._drop()
         self._first_stage()
         if self.open.size and self.count < self.study.impacts:
             self._look()
             self._second_stage()
         self._last_look()
+
+    def _drop(self) -> None:
+        """The first flights of states (x, x') of a model without a clock, to the wall."""
+        model, x, xdot = self.study.model, self.tau, self.v
+        ends = launch(model, x, xdot, 0.0, horizon=self.study.horizon)
+        rows, self.tau, self.v = _ended(ends.status), 0.0 * x, np.array(ends.v)
+        free = np.flatnonzero(_open_flights(ends.status))
+        late = free[self._free(rows, free, x[free] - as_float(model.clearance), xdot[free])]
+        self.v[late] = launch(model, x[late], xdot[late], 0.0).v
+        self._decide(~(self.v > 0), rows)
+
+    def _free(self, rows: Array, free: Array, height: Array, xdot: Array) -> Array:
+        """Put in the rows of motions that met no wall for long; whether these meet it all the same."""
+        fates = free_fates(self.study.model, height, xdot)
+        late = np.isnan(fates[:, 0])
+        certain = ~late & ((fates[:, 0] != AWAY) | (rows[free, 0] != GONE))
+        rows[free[certain]] = fates[certain]
+        return np.asarray(late & (rows[free, 0] != GONE))
 
     def _first_stage(self) -> None:
         """The number of impacts in which a plain chatter becomes slow, with searches at doubling distances."""
@@ -205,18 +230,21 @@ class _Run:
     def _fly(self, impacts: int) -> None:
         """Impacts of all open states; those whose flights end are decided."""
         study, at = self.study, self.open
-        ends = iterate(study.model, self.tau[at], self.v[at], impacts, SETTINGS.tolerance)
+        ends = iterate(study.model, self.tau[at], self.v[at], impacts, SETTINGS.tolerance, study.horizon)
         self.count += impacts
-        # doubles do here, and a time within a period needs no exact reduction, which costs more than the flight
-        self.tau[at], self.v[at] = ends.tau - study.period * np.floor(ends.tau / study.period), ends.v
+        self.tau[at], self.v[at] = study.phases.of(ends.tau), ends.v
         rests = chattering(study, self.tau[at], ends.v)
-        rows = np.zeros((at.size, 3))
-        rows[:, 0] = STUCK
-        for status, code in ((Status.no_return, AWAY), (Status.escaped, GONE)):
-            rows[ends.status == status, 0] = code
+        rows, over = _ended(ends.status), (ends.status != 0) | ~np.isfinite(ends.tau) | ~(ends.v >= 0)
+        if not study.phases.clocked:
+            free = np.flatnonzero(_open_flights(ends.status))
+            late = free[self._free(rows, free, np.zeros(free.size), ends.v[free])]
+            self.v[at[late]] = impact_map(study.model, 0 * ends.v[late], ends.v[late]).v
+            over[late] = ~(self.v[at[late]] > 0)
+            # off a wall that pushes, flights of so slow a launch are grazes to rounding
+            over |= ~rests & (ends.v <= SETTINGS.rest * study.fast)
         rows[rests, 0] = CHATTER
-        rows[rests, 1] = next_lift_off(study.phases, _at_rest(study, self.tau[at[rests]], self.v[at[rests]]))
-        self._decide(rests | (ends.status != 0) | ~np.isfinite(ends.tau) | ~(ends.v >= 0), rows)
+        rows[rests, 1] = next_lift_off(study.lift_offs, at_rest(study, self.tau[at[rests]], self.v[at[rests]]))
+        self._decide(rests | over, rows)
 
     def _catch(self) -> bool:
         """Whether some open states are near a known attractor, or one that a sample of them has reached."""
@@ -232,7 +260,7 @@ class _Run:
     def _near(self, tau: Array, v: Array) -> Array:
         """Whether open states are where they were before."""
         now = self.tau[self.open], self.v[self.open]
-        return apart(now, (tau, v), self.study.period, self.study.fast) < ATTRACTORS.close
+        return apart(now, (tau, v), self.study.phases, self.study.fast) < ATTRACTORS.close
 
     def _search(self, places: Array, chosen: Array, most: int = ATTRACTORS.most_impacts) -> Array:
         """The places with those of attractors that a sample of the chosen open states has reached."""
@@ -252,10 +280,21 @@ class _Run:
         self._decide(places >= 0, rows)
 
 
-def _at_rest(study: Study, tau: Array, v: Array) -> Array:
+def _ended(status: Array) -> Array:
+    """Rows of states whose flights have ended so."""
+    rows = np.zeros((status.size, 3))
+    rows[:, 0] = np.select([status == Status.no_return, status == Status.escaped], [AWAY, GONE], STUCK)
+    return rows
+
+
+def _open_flights(status: Array) -> Array:
+    """Whether flights meet no wall, before the horizon, or before their steps were used up."""
+    return np.isin(status, (Status.no_return, Status.unresolved, Status.escaped))
+
+
+def at_rest(study: Study, tau: Array, v: Array) -> Array:
     """The phase, within a period, at which the remaining chatter ends, to first order."""
-    left = rest_after(study.model, v, acceleration(study.model, tau))
-    return np.asarray((tau + left) - study.period * np.floor((tau + left) / study.period))
+    return np.asarray(study.phases.of(tau + rest_after(study.model, v, acceleration(study.model, tau))))
 
 
 def chattering(study: Study, tau: Array, v: Array) -> Array:
@@ -270,7 +309,7 @@ def chattering(study: Study, tau: Array, v: Array) -> Array:
     now, speed = acceleration(model, tau[slow]), v[slow]
     with np.errstate(all="ignore"):
         rest = np.where(now < 0, rest_after(model, speed, now), np.inf)
-    short = (now < 0) & (rest < SETTINGS.lasting * study.period)
+    short = (now < 0) & (rest < SETTINGS.lasting * study.phases.unit)
     pressed = [acceleration(model, tau[slow] + np.where(short, k * rest, 0.0)) < now / 2 for k in (2, 4, 8)]
     settled = (now < 0) & (speed <= SETTINGS.rest * fast)
     rests[slow] = settled | (short & np.all(pressed, axis=0))

@@ -95,14 +95,17 @@ class Ends(Result):
         return {name: (of_one if name == "status" else kept + of_one, value) for name, (_, value) in values.items()}
 
 
-def iterate(osc: Oscillator, tau: Any, v: Any, impacts: int, tolerance: float = EPSILON) -> Ends:
+def iterate(
+    osc: Oscillator, tau: Any, v: Any, impacts: int, tolerance: float = EPSILON, horizon: float | None = None
+) -> Ends:
     """G^impacts of states; an orbit that meets no further impact stays where it is.
 
     Parameters
     ----------
     osc : the model. tau, v : states that broadcast. impacts : flown. A chatter whose rest is below the last bit of tau
         ends as `complete`, with v = 0.
-    tolerance : relative error of a Taylor step; closed forms keep to roundings.
+    tolerance : relative error of a Taylor step; closed forms keep to roundings. horizon : of a flight, in place of the
+        default.
 
     Examples
     --------
@@ -111,15 +114,17 @@ def iterate(osc: Oscillator, tau: Any, v: Any, impacts: int, tolerance: float = 
     ([1.75, 2.75], [0.125, 0.125])
     """
     if many(tau, v):
-        return in_blocks(partial(iterate, osc, impacts=impacts, tolerance=tolerance), tau, v)  # type: ignore[no-any-return]
+        return in_blocks(partial(iterate, osc, impacts=impacts, tolerance=tolerance, horizon=horizon), tau, v)  # type: ignore[no-any-return]
     states = States.read(tau, v).in_period(osc)
     model = compiled_model(osc)
     if osc.plastic:
         times, speeds, codes = _from_rest(osc, states, impacts, tolerance)
         parts = times + states.turns, speeds, codes
         return Ends(*(column.reshape(states.shape)[()] for column in parts))
-    if tolerance > EPSILON and not model.linear:
-        model = allowed(osc, replace(model.allowance, epsilon=tolerance))
+    epsilon = EPSILON if model.linear else tolerance
+    if epsilon > EPSILON or horizon is not None:
+        longest = model.allowance.horizon if horizon is None else horizon
+        model = allowed(osc, replace(model.allowance, epsilon=epsilon, horizon=longest))
     times, speeds, codes = model.iterate(states.tau, states.v, impacts)
     if tolerance > EPSILON and (left := codes == Status.unresolved).any():
         # a graze that a coarse flight does not decide: one more impact, accurately

@@ -117,6 +117,18 @@ def common_period(*trees: Expression) -> Expression | None:
     return multiply(number(2 / common), Pi(), power(moving[0][1], number(-1)))
 
 
+def oscillates(*trees: Expression) -> bool:
+    """Whether t enters through circular functions of multiples of t alone, with a common period or without.
+
+    Examples
+    --------
+    >>> from singimpact.algebra.parsing import parse
+    >>> [oscillates(parse(text, ["t"])) for text in ("cos(t) + cos(sqrt(2)*t)", "t**2")]
+    [True, False]
+    """
+    return all(_frequencies(tree) is not None for tree in trees)
+
+
 def checked_period(trees: Mapping[str, Expression], value: Any, computed: Expression | None) -> Expression:
     """A period the caller gives, refused when f or g does not repeat with it at some sample times."""
     period = constant("period", value)

@@ -12,6 +12,13 @@ from singimpact.oscillator.moving_number import value_of, with_number
 from singimpact.scenes.scene import LAYERS, Scene
 from singimpact.scenes.style import CHATTERED, CLASS_ORBITS, CLASSES, GREY, OPEN, PENS, VERMILLION
 
+LABELS = {
+    "tau": r"launch phase $\tau$",
+    "v": "launch velocity $v$",
+    "x": "$x$ at the start",
+    "xdot": "$x'$ at the start",
+}
+
 
 def draw_basins(found: Basins, axes: Any = None, colors: Sequence[str] | None = None) -> Any:
     """The classes of a grid of states as a picture; returns the matplotlib axes.
@@ -31,7 +38,7 @@ def class_colors(several: Sequence[Basins]) -> list[list[str]]:
     >>> class_colors([])
     []
     """
-    used, shades, colorings = dict.fromkeys(("orbit", "chatter"), 0), dict[Any, str](), []
+    used, shades, colorings = {"orbit": 0, "chatter": 0}, dict[Any, str](), []
     for basins in several:
         colors, names = [], list[Any]()
         for code, _, _ in basins.classes:
@@ -40,10 +47,11 @@ def class_colors(several: Sequence[Basins]) -> list[list[str]]:
             names.append(name)
             key = (*name, names.count(name))  # the second of two equal (n, k)
             if key not in shades:
-                palette = CLASS_ORBITS if kind == "orbit" else CHATTERED
-                shades[key] = CLASSES.get(kind) or palette[used[kind] % len(palette)]
-                if kind in used:
-                    used[kind] += 1
+                palette = CHATTERED if kind == "chatter" else CLASS_ORBITS
+                family = "chatter" if kind == "chatter" else "orbit"
+                shades[key] = CLASSES.get(kind) or palette[used[family] % len(palette)]
+                if kind not in CLASSES:
+                    used[family] += 1
             colors.append(shades[key])
         colorings.append(colors)
     return colorings
@@ -69,7 +77,7 @@ def _painted(basins: Basins, layers: list[tuple[Any, str]], colors: list[str], a
     half_tau, half_v = np.diff(basins.tau[:2])[0] / 2, np.diff(basins.v[:2])[0] / 2
     box = (basins.tau[0] - half_tau, basins.tau[-1] + half_tau, basins.v[0] - half_v, basins.v[-1] + half_v)
     axes.imshow(image, origin="lower", extent=box, aspect="auto", interpolation="nearest", gid="basins")
-    axes.set(xlabel=r"launch phase $\tau$", ylabel="launch velocity $v$")
+    axes.set(**dict(zip(("xlabel", "ylabel"), (LABELS[name] for name in basins.coordinates), strict=True)))
     axes.legend(
         handles=patches[:12], loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=3, frameon=False, fontsize="small"
     )

@@ -21,6 +21,7 @@ CLASSES = {
     "never returns": WHITE,
     "no impact": WHITE,
     "chaotic": "#C9C9C9",
+    "continuum": "#D9D9D9",
     "rest": BLACK,
 }
 """Classes of states that settle on no periodic orbit."""

@@ -97,7 +97,7 @@ def always_chaotic():
 
         return classify
 
-    return "dynamics.settling.classify", wrong
+    return "dynamics.basins_of_attraction.classify", wrong
 
 
 def chatter_too_early():

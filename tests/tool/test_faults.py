@@ -207,11 +207,22 @@ def test_an_interrupted_scene_keeps_its_curves(number, tmp_path):
     assert "foliation" not in report["from_cache"]
 
 
+MODELS = {
+    "clockless": 'f = "x - (1 - x**2)*xdot"\ng = "0"\nclearance = "-2.1"\nrestitution = "0.8"\n',
+    "waves": 'f = "x"\ng = "cos(2.8*t) + cos(2.8*sqrt(2)*t)/50"\nclearance = "0.1"\nrestitution = "0.8"\n',
+}
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("asked", ["basins", "bifurcation"])
-def test_an_interrupted_picture_of_a_sweep_resumes(asked, tmp_path, tmp_path_factory):
+@pytest.mark.parametrize(
+    ("asked", "kind"), [("basins", ""), ("basins", "clockless"), ("basins", "waves"), ("bifurcation", "")]
+)
+def test_an_interrupted_picture_of_a_sweep_resumes(asked, kind, tmp_path, tmp_path_factory):
     output, cached = tmp_path / "picture.png", tmp_path_factory.getbasetemp()  # both compile the same
     given = ["--omega", "2.8", "--clearance", "0", "--restitution", "0.8", "--workers", "1"]
+    if kind:
+        (tmp_path / "model.toml").write_text(MODELS[kind])
+        given = ["--model", tmp_path / "model.toml", "--workers", "1"]
     given += {
         "basins": ["--size", "280", "--impacts", "300"],
         "bifurcation": ["--from", "0.1", "--to", "0.3", "--points", "700"],

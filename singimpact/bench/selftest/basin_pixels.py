@@ -17,6 +17,7 @@ from singimpact.bench.selftest.rows import Row, Tally
 from singimpact.bench.truth.graded_steps import HIT, MISS, UNDECIDED
 from singimpact.bench.truth.plain_orbits import PlainOrbits
 from singimpact.dynamics import basins_of_attraction
+from singimpact.dynamics.behaviours import LongRun
 from singimpact.flights.horizons import horizon_of
 from singimpact.inputs import InputError
 
@@ -245,9 +246,7 @@ def row(flown: Flown) -> Row:
     return tally.row()
 
 
-def _pixel(
-    follower: Follower, state: tuple[float, float], answer: basins_of_attraction.LongRun, first: bool, tally: Tally
-) -> None:
+def _pixel(follower: Follower, state: tuple[float, float], answer: LongRun, first: bool, tally: Tally) -> None:
     """Judge one pixel, or leave it with a cause."""
     call = f"basins from tau {state[0]!r}, v {state[1]!r}: {answer.name}, first chatter completes: {first}"
     if answer.kind == "unresolved":
@@ -271,7 +270,7 @@ def _pixel(
         tally.judge(np.inf, call)
 
 
-def _agrees(follower: Follower, answer: basins_of_attraction.LongRun, first: bool, fate: Fate) -> bool:
+def _agrees(follower: Follower, answer: LongRun, first: bool, fate: Fate) -> bool:
     """Whether the first chatter, and what comes of the orbit for ever, are those of `basins`."""
     if first != (fate.kind == "chatter"):
         return False
@@ -287,7 +286,7 @@ def _agrees(follower: Follower, answer: basins_of_attraction.LongRun, first: boo
     return answer.kind == last.kind == "rest"
 
 
-def _near(follower: Follower, answer: basins_of_attraction.LongRun, fate: Fate) -> bool:
+def _near(follower: Follower, answer: LongRun, fate: Fate) -> bool:
     """Whether the last state is one of the attractor."""
     period = follower.plain.period
     assert period is not None
@@ -296,7 +295,7 @@ def _near(follower: Follower, answer: basins_of_attraction.LongRun, fate: Fate) 
     return bool(near.any())
 
 
-def _explained(follower: Follower, state: tuple[float, float], answer: basins_of_attraction.LongRun, fate: Fate) -> str:
+def _explained(follower: Follower, state: tuple[float, float], answer: LongRun, fate: Fate) -> str:
     """Why a difference decides nothing; empty where nothing explains it."""
     last = follower.last(fate)
     if "undecided" in (last.kind, fate.kind):
@@ -324,7 +323,7 @@ def _unsettled_beside(follower: Follower, state: tuple[float, float], fate: Fate
     return next((beside for beside in fates if beside.kind == "unsettled"), None)
 
 
-def _unsettled(follower: Follower, answer: basins_of_attraction.LongRun, fate: Fate, call: str, tally: Tally) -> None:
+def _unsettled(follower: Follower, answer: LongRun, fate: Fate, call: str, tally: Tally) -> None:
     """No period here either; "chaotic" says that neighbours separate too."""
     if answer.kind == "not decided" or follower.separates((fate.tau, fate.v), FOLLOWED.chaos, PIXELS.impacts):
         tally.judge(0.0, call)

@@ -95,3 +95,15 @@ def test_one_figure_as_a_file_of_its_own(capsys, tmp_path):
     assert code == 2
     assert "several figures" in error
     assert not (tmp_path / "all.svg").exists()
+
+
+def test_basins_without_a_clock_take_windows_of_starts(capsys, tmp_path):
+    (tmp_path / "m.toml").write_text('f = "x - (1 - x**2)*xdot"\ng = "0"\nclearance = "-2.1"\nrestitution = "0.8"\n')
+    words = ["basins", "--model", tmp_path / "m.toml", "--size", 6, "-o", tmp_path / "b.png"]
+    code, out, _ = run(capsys, *words, "--x", -1, 1, "--xdot", 0, 1)
+    assert code == 0
+    assert "limit cycle without impact, period 6.66329  1.0000" in out
+    assert (tmp_path / "b.png").stat().st_size > 1000
+    code, _, error = run(capsys, *words, "--tau", 0, 1)
+    assert code
+    assert "give --x and --xdot for this model" in error

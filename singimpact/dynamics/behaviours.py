@@ -1,0 +1,118 @@
+"""Long-term behaviours of orbits and their names, the same in basins and in bifurcation diagrams."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from singimpact.algebra.numbers import Array, as_float
+from singimpact.dynamics.attractors import (
+    AWAY,
+    CHAOS,
+    CHATTER,
+    CYCLE,
+    GONE,
+    LEVEL,
+    OTHER,
+    PLACES,
+    RESPONSE,
+    RESTING,
+    SENSITIVE,
+    STILL,
+    STUCK,
+    states_of,
+)
+from singimpact.dynamics.settling import Study
+from singimpact.flights.horizons import horizon_of
+from singimpact.flights.orbits import iterate
+
+KINDS = {
+    OTHER: "not decided",
+    CHAOS: "chaotic",
+    GONE: "never returns",
+    AWAY: "no impact",
+    STUCK: "unresolved",
+    SENSITIVE: "sensitive",
+    LEVEL: "continuum",
+}
+
+
+@dataclass(frozen=True)
+class LongRun:
+    """An attractor, or another long-term behaviour.
+
+    Attributes
+    ----------
+    kind : "orbit"; "chatter" (it completes again and again); "rest" (on the wall); "equilibrium" (a rest off the wall);
+        "quasi-periodic" (the forcing never repeats, and neighbours come together); "chaotic" (no period within
+        `impacts`, and neighbours separate); "not decided" (no period, and they do not); "sensitive" (there are several
+        attractors, or chatter comes again after more than 60 impacts, and a neighbour 1e-15 away parts from the orbit:
+        more than doubles would decide); "continuum" (without a clock: the orbit closes, and its neighbours do); "no
+        impact" (none within `horizon`); "never returns" (proved); "unresolved" (a flight is: `osc.orbit` says which).
+    n, k : impacts (inf for chatter) in k periods, of an orbit or of chatter; 0 otherwise. A limit cycle has k = 0, and
+        n = 0 where it does not touch the wall.
+    tau, v : the states of an orbit; of chatter the phase at which the mass lifts off, and 0; where
+        the forcing never repeats, one late impact.
+    period : of a limit cycle. x : of an equilibrium; of a limit cycle without impact the least one.
+    """
+
+    kind: str
+    n: float
+    k: int
+    tau: Array
+    v: Array
+    impacts: int = 0
+    horizon: float = 0.0
+    period: float = 0.0
+    x: float = np.nan
+
+    @property
+    def name(self) -> str:
+        """The name in the legend of the picture, and what would decide a class that is not decided."""
+        if self.kind == "orbit" and self.k:
+            return f"({self.n:.0f}, {self.k}) orbit"
+        count = f"{self.impacts:,}".replace(",", " ")
+        touches = f"of {self.n:.0f} impact" + "s" * (self.n > 1) if self.n else "without impact"
+        names = {
+            "orbit": f"limit cycle {touches}, period {self.period:.6g}",
+            "equilibrium": f"rest off the wall at x = {self.x:.6g}",
+            "chatter": f"(inf, {self.k}) chatter for ever" if self.k else "chatter for ever",
+            "rest": "rest for ever",
+            "chaotic": f"no period in {count} impacts, neighbours separate",
+            "not decided": f"not settled in {count} impacts: larger impacts= may decide",
+            "sensitive": "rounding decides: neighbours 1e-15 away part",
+            "no impact": f"no impact within {self.horizon:.4g}",
+            "continuum": "closes beside others that close: nothing attracts",
+            "unresolved": "a flight is unresolved: osc.orbit says which",
+        }
+        return names.get(self.kind, self.kind)
+
+
+def behaviour(study: Study, row: Array) -> LongRun:
+    """The long-term behaviour that a row of `classify` stands for.
+
+    Examples
+    --------
+    >>> from singimpact.oscillator.model import Oscillator
+    >>> behaviour(Study(Oscillator("x", "-1", 0, 1), (), 1.0, 100), np.array([CHATTER, -1.0, 0.0])).name
+    'rest for ever'
+    """
+    model, (code, tau, v) = study.model, row.tolist()
+    none, wall = np.zeros(0), as_float(model.clearance)
+    if code >= PLACES:
+        n, k = divmod(int(code), PLACES)
+        times, speeds = states_of(model, int(code), tau, v)
+        # of a cycle the sum of its flights, each from time 0
+        period = k * study.phases.unit or float(iterate(model, 0 * speeds, speeds, 1).tau.sum())
+        return LongRun("orbit", n, k, times, speeds, period=period)
+    if code == CYCLE:
+        return LongRun("orbit", 0, 0, none, none, period=tau, x=wall + v)
+    if code == STILL:
+        return LongRun("equilibrium", 0, 0, none, none, x=wall + tau)
+    if code == CHATTER:
+        at = np.array([study.lift_offs[int(tau)]]) if tau >= 0 and study.lift_offs else none
+        return LongRun("chatter" if tau >= 0 else "rest", np.inf, int(v), at, 0 * at)
+    if code == RESPONSE:
+        return LongRun("quasi-periodic", 0, 0, np.array([tau]), np.array([v]))
+    if code == RESTING:
+        return LongRun("chatter", np.inf, 0, none, none)
+    return LongRun(KINDS[int(code)], 0, 0, none, none, study.impacts, horizon_of(model, None))
