@@ -10,7 +10,7 @@ import numpy as np
 
 from singimpact.algebra.numbers import compare, constant
 from singimpact.handed_on import Study
-from singimpact.inputs import InputError, checked_keywords, checked_methods, refuse, whole
+from singimpact.inputs import InputError, checked_keywords, checked_methods, refuse, takes_two_walls, whole
 from singimpact.oscillator.model import Oscillator
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 @checked_methods
 class ImpactOscillator(Oscillator):
-    """x'' + f(x, x') = g(t), x >= clearance, v -> -restitution v; parameters as in `Oscillator`.
+    """x'' + f(x, x', t) = g(t), x >= clearance, v -> -restitution v; parameters as in `Oscillator`.
 
     Examples
     --------
@@ -47,6 +47,7 @@ class ImpactOscillator(Oscillator):
     tangency_points, classify, grown_gamma, release_map = Study(), Study(), Study(), Study()
     border_orbits, transitions, explore, selftest = Study(), Study(), Study(), Study()
 
+    @takes_two_walls
     def first_hit(
         self,
         tau: Any,
@@ -58,6 +59,7 @@ class ImpactOscillator(Oscillator):
         steps: int | None = None,
         out: Mapping[str, Any] | None = None,
         threads: int | None = None,
+        wall: Any = None,
     ) -> Flight:
         """The first hit F of the wall for flights from (tau, v).
 
@@ -69,6 +71,7 @@ class ImpactOscillator(Oscillator):
             search ends; without it 1000 periods of the forcing, or more where the motion is slow beside it.
         tolerance : relative error of a step of a nonlinear flight. steps : Taylor steps at most. out : arrays
             to write the results to, by field. threads : that share out an array, two without it.
+        wall : of the states of a model with two walls: "lower" (also without it), "upper", or an array of them.
 
         Returns
         -------
@@ -84,12 +87,17 @@ class ImpactOscillator(Oscillator):
         from singimpact.flights.impact_map import first_hit
 
         if threads is None:
-            return first_hit(self, tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps, out=out)
+            return first_hit(
+                self, tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps, out=out, wall=wall
+            )
         from singimpact.flights.interruptible import on_threads
 
         with on_threads(threads):
-            return first_hit(self, tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps, out=out)
+            return self.first_hit(
+                tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps, out=out, wall=wall
+            )
 
+    @takes_two_walls
     def impact_map(
         self,
         tau: Any,
@@ -101,17 +109,18 @@ class ImpactOscillator(Oscillator):
         steps: int | None = None,
         out: Mapping[str, Any] | None = None,
         threads: int | None = None,
+        wall: Any = None,
     ) -> Step:
         """The impact map G: the next impact of flights from (tau, v), and the velocity after it.
 
         Parameters
         ----------
-        tau, v, digits, tolerance, horizon, steps, out, threads : as for `first_hit`.
+        tau, v, digits, tolerance, horizon, steps, out, threads, wall : as for `first_hit`.
 
         Returns
         -------
         Step : `.tau` and `.v` of the next impact, and the fields of `first_hit`. Without an impact tau is inf or nan
-            and v is nan; `.status` gives the reason.
+            and v is nan; `.status` gives the reason. With two walls `.wall` is that of the next state, 0 or 1.
 
         Examples
         --------
@@ -122,11 +131,15 @@ class ImpactOscillator(Oscillator):
         from singimpact.flights.impact_map import impact_map
 
         if threads is None:
-            return impact_map(self, tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps, out=out)
+            return impact_map(
+                self, tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps, out=out, wall=wall
+            )
         from singimpact.flights.interruptible import on_threads
 
         with on_threads(threads):
-            return impact_map(self, tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps, out=out)
+            return self.impact_map(
+                tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps, out=out, wall=wall
+            )
 
     def enclosed_impact(
         self, tau: Any, v: Any, *, radii: Mapping[str, Any] | None = None, digits: int = 30, horizon: Any = None
@@ -169,8 +182,13 @@ class ImpactOscillator(Oscillator):
 
         return path(self, tau, v, t)
 
-    def acceleration(self, tau: Any, order: int = 0) -> Any:
-        """a_c(tau) = g(tau) - f(c, 0), or its derivative of an order.
+    @takes_two_walls
+    def acceleration(self, tau: Any, order: int = 0, wall: Any = None) -> Any:
+        """a_c(tau) = g(tau) - f(c, 0, tau), or its derivative of an order.
+
+        Parameters
+        ----------
+        tau : times. order : from 0 to 60. wall : of a model with two; at the upper one a_c > 0 is away from it too.
 
         Examples
         --------
@@ -178,8 +196,12 @@ class ImpactOscillator(Oscillator):
         [0.0, -1.860079008832274]
         """
         from singimpact.flights.states import States
+        from singimpact.flights.walls import wall_codes
         from singimpact.oscillator.wall_acceleration import acceleration, acceleration_at, at_exactly
 
+        above = wall_codes(self, wall)
+        if above.any():
+            return np.where(above, self.mirrored.acceleration(tau, order), self.acceleration(tau, order))[()]
         if type(tau) is float and type(order) is int and order == 0 and abs(tau) < inf:
             return np.float64(acceleration_at(self, tau))
         if isinstance(order, bool) or not isinstance(order, int) or not 0 <= order <= 60:
@@ -191,20 +213,22 @@ class ImpactOscillator(Oscillator):
                 values[index] = at_exactly(self, states.exact_tau(index), order)
         return values.reshape(states.shape)[()]
 
+    @takes_two_walls
     def iterate(
-        self, tau: Any, v: Any, impacts: int = 100, *, keep: bool = False, threads: int | None = None
+        self, tau: Any, v: Any, impacts: int = 100, *, keep: bool = False, threads: int | None = None, wall: Any = None
     ) -> Iterates:
         """Many impacts of each of many states: iterates of the impact map G.
 
         Parameters
         ----------
         tau, v : states that broadcast. impacts : for each state. keep : return all states, with a first axis of
-            length impacts + 1. threads : as for `first_hit`.
+            length impacts + 1. threads, wall : as for `first_hit`.
 
         Returns
         -------
         tau, v, status : the last states, and 0; or, of an orbit that ended early, its last impact and the status of
-            the flight after it; with restitution 0 `sticks` where the mass rests.
+            the flight after it; with restitution 0 `sticks` where the mass rests. wall : of the states, of a model with
+            two walls.
 
         Examples
         --------
@@ -216,14 +240,15 @@ class ImpactOscillator(Oscillator):
         from singimpact.flights.orbits import iterates
 
         with on_threads(threads):
-            return iterates(self, tau, v, whole("impacts", impacts, 0, 10**7), keep)
+            return iterates(self, tau, v, whole("impacts", impacts, 0, 10**7), keep, wall)
 
-    def derivative(self, tau: Any, v: Any, *, horizon: Any = None) -> Derivative:
+    @takes_two_walls
+    def derivative(self, tau: Any, v: Any, *, horizon: Any = None, wall: Any = None) -> Derivative:
         """D G, the derivative of the impact map, from the variational equation.
 
         Parameters
         ----------
-        tau, v : states, v >= 0; they broadcast. horizon : as for `first_hit`.
+        tau, v : states, v >= 0; they broadcast. horizon, wall : as for `first_hit`.
 
         Returns
         -------
@@ -236,14 +261,18 @@ class ImpactOscillator(Oscillator):
         """
         from singimpact.flights.derivative import derivative
 
-        return derivative(self, tau, v, horizon=horizon)
+        return derivative(self, tau, v, horizon=horizon, wall=wall)
 
-    def inverse_map(self, tau: Any, v: Any, *, digits: int | None = None, horizon: Any = None) -> Step:
+    @takes_two_walls
+    def inverse_map(
+        self, tau: Any, v: Any, *, digits: int | None = None, horizon: Any = None, wall: Any = None
+    ) -> Step:
         """The inverse G^{-1}: the state whose next impact leaves (tau, v).
 
         Parameters
         ----------
-        tau, v : states just after an impact. digits, horizon : as for `first_hit`.
+        tau, v : states just after an impact. digits, horizon, wall : as for `first_hit`; `.wall` is that of the state
+            before.
 
         Examples
         --------
@@ -255,16 +284,19 @@ class ImpactOscillator(Oscillator):
         """
         from singimpact.flights.inverse_map import inverse_map
 
-        return inverse_map(self, tau, v, digits=digits, horizon=horizon)
+        return inverse_map(self, tau, v, digits=digits, horizon=horizon, wall=wall)
 
-    def chatter_limit(self, tau: Any, v: Any, *, digits: int | None = None, impacts: int = 1_000_000) -> ChatterLimit:
+    @takes_two_walls
+    def chatter_limit(
+        self, tau: Any, v: Any, *, digits: int | None = None, impacts: int = 1_000_000, wall: Any = None
+    ) -> ChatterLimit:
         """The time at which infinitely many impacts accumulate; with restitution 0 that of the first impact.
 
         Parameters
         ----------
         tau, v : states, v >= 0; they broadcast. digits : decimal digits of the time, certified where
             the restitution is a number.
-        impacts : at most; the status is then `unresolved`.
+        impacts : at most; the status is then `unresolved`. wall : as for `first_hit`.
 
         Returns
         -------
@@ -277,7 +309,7 @@ class ImpactOscillator(Oscillator):
         """
         from singimpact.dynamics.chatter import chatter_limit
 
-        return chatter_limit(self, tau, v, digits=digits, impacts=impacts)
+        return chatter_limit(self, tau, v, digits=digits, impacts=impacts, wall=wall)
 
     def certified_gamma(
         self, tau: Any = None, *, reach: Any = None, restitution: tuple[Any, Any] | None = None
@@ -307,6 +339,7 @@ class ImpactOscillator(Oscillator):
 
         return certified_gamma(self, tau, reach=reach, restitution=restitution)
 
+    @takes_two_walls
     def periodic(
         self, n: Any, k: int | None = None, start: Any = None, *, v: Any = None, digits: int | None = None
     ) -> PeriodicOrbits:
@@ -314,7 +347,8 @@ class ImpactOscillator(Oscillator):
 
         Parameters
         ----------
-        n : impacts; `math.inf` for orbits that chatter to rest, 0 for orbits without impact. k : periods.
+        n : impacts; `math.inf` for orbits that chatter to rest, 0 for orbits without impact; with two walls a word such
+            as "lu". k : periods.
         start : states to start from, (tau, v) or n of them, or an orbit. digits : decimal digits of the orbits.
         v : (low, high), the velocities for which `.complete` is to be proved; of linear models none are needed.
 
@@ -332,6 +366,7 @@ class ImpactOscillator(Oscillator):
 
         return periodic(self, n, k, start, v=v, digits=digits)
 
+    @takes_two_walls
     def orbit(
         self,
         tau: Any = None,
@@ -342,17 +377,19 @@ class ImpactOscillator(Oscillator):
         x: Any = None,
         xdot: Any = None,
         t: Any = None,
+        wall: Any = None,
     ) -> Orbit:
         """The orbit of one state: impacts, complete chatter, rest and lift-off in order.
 
         Parameters
         ----------
         tau, v : the state just after an impact; or x, xdot, t : a start off the wall.
-        impacts : flights at most; a complete chatter counts as one. horizon : as for `first_hit`.
+        impacts : flights at most; a complete chatter counts as one. horizon, wall : as for `first_hit`.
 
         Returns
         -------
-        Orbit : `.tau`, `.v`, `.kind` of events, `.phases` between them; `.sample(t)`, `.section()`, `.to_csv(file)`.
+        Orbit : `.tau`, `.v`, `.kind` of events, `.wall` where there are two, `.phases` between them; `.sample(t)`,
+            `.section()`, `.to_csv(file)`.
 
         Examples
         --------
@@ -362,15 +399,20 @@ class ImpactOscillator(Oscillator):
         from singimpact.dynamics.orbit import dropped_orbit, orbit
 
         if x is xdot is t is None and tau is not None:
-            return orbit(self, tau, v, impacts, horizon=horizon)
-        if tau is not None or v is not None or x is None or xdot is None or t is None:
+            return orbit(self, tau, v, impacts, horizon=horizon, wall=wall)
+        if wall is not None or tau is not None or v is not None or x is None or xdot is None or t is None:
             raise InputError(
                 "an orbit starts from tau and v, or off the wall from x=, xdot= and t=: give all of one kind"
             )
         return dropped_orbit(self, (x, xdot, t), impacts, horizon=horizon)
 
-    def release(self, tau: float) -> float:
+    @takes_two_walls
+    def release(self, tau: float, wall: Any = None) -> float:
         """The lift-off time of a mass at rest at tau: tau if a_c(tau) > 0, else the next rise of a_c through 0.
+
+        Parameters
+        ----------
+        tau : a time. wall : on which the mass rests, of a model with two: "lower" (also without it) or "upper".
 
         Examples
         --------
@@ -379,7 +421,10 @@ class ImpactOscillator(Oscillator):
         """
         from singimpact.dynamics.lift_off import release
         from singimpact.flights.states import States
+        from singimpact.flights.walls import wall_codes
 
+        if wall_codes(self, wall).any():
+            return self.mirrored.release(tau)
         states = States.read(tau, 0.0).in_period(self)
         if states.shape:
             raise refuse("tau", tau, "one number")
@@ -387,6 +432,7 @@ class ImpactOscillator(Oscillator):
         lifted = start if self.acceleration(tau) > 0 else release(self, start)
         return lifted + float(np.ravel(states.turns)[0])
 
+    @takes_two_walls
     def launch(self, x: Any, xdot: Any, t: Any, *, horizon: Any = None) -> Launched:
         """The first impact of flights that start off the wall.
 
@@ -408,6 +454,7 @@ class ImpactOscillator(Oscillator):
 
         return launch(self, x, xdot, t, horizon=horizon)
 
+    @takes_two_walls
     def to_toml(self) -> str:
         """The model as the text of a model file.
 
@@ -436,12 +483,15 @@ def linear(
     stiffness: Any = 1,
     amplitude: Any = 1,
     phase: Any = 0,
+    upper: Any = None,
+    upper_restitution: Any = None,
 ) -> ImpactOscillator:
     """x'' + damping x' + stiffness x = amplitude cos(omega t + phase); terms with default values are left out.
 
     Parameters
     ----------
     omega, clearance, restitution, damping, stiffness, amplitude, phase : numbers; omega > 0.
+    upper, upper_restitution : of a second wall, as for `ImpactOscillator`.
 
     Examples
     --------
@@ -455,7 +505,8 @@ def linear(
     force = ("stiffness*x" if "stiffness" in changed else "x") + (" + damping*xdot" if "damping" in changed else "")
     wave = "cos(omega*t + phase)" if "phase" in changed else "cos(omega*t)"
     forcing = f"amplitude*{wave}" if "amplitude" in changed else wave
-    return ImpactOscillator(force, forcing, clearance, restitution, {"omega": omega, **changed})
+    above = {"upper": upper, "upper_restitution": upper_restitution}
+    return ImpactOscillator(force, forcing, clearance, restitution, {"omega": omega, **changed}, **above)
 
 
 @checked_keywords

@@ -167,8 +167,36 @@ def require_known(kind: str, names: Iterable[str], accepted: Iterable[str]) -> N
             raise unknown(kind, name, known)
 
 
+TWO_WALLS = "two_walls"
+"""The attribute of a function that takes a model with two walls."""
+
+
+def takes_two_walls(function: T) -> T:
+    """The function, marked as one that takes a model with two walls; others refuse it, see `checked_keywords`."""
+    setattr(function, TWO_WALLS, True)
+    return function
+
+
+def _may_have_walls(value: object) -> bool:
+    """Whether a value is a model with two walls, or an orbit or an event, which has a model; perhaps a text too."""
+    return hasattr(value, "oscillator") or getattr(value, "upper", None) is not None
+
+
+def _require_one_wall(name: str, values: Sequence[Any], named: dict[str, Any]) -> None:
+    """Refuse a model with two walls: it would be taken for one with its lower wall alone."""
+    for value in (*values[:2], *named.values()):
+        value = getattr(value, "oscillator", value)  # of an orbit, or of an event
+        if getattr(value, "upper", None) is not None and hasattr(value, "one_wall"):
+            raise InputError(
+                f"{name} takes a model with one wall, and this one has a second at upper = {shown(str(value.upper))}: "
+                "give osc.one_wall('lower') or osc.one_wall('upper')"
+            )
+
+
 def checked_keywords(function: Callable[P, T]) -> Callable[P, T]:
     """The function, whose calls with other arguments than it takes are refused in a sentence.
+
+    So is a model with two walls, unless the function `takes_two_walls`.
 
     Examples
     --------
@@ -177,8 +205,14 @@ def checked_keywords(function: Callable[P, T]) -> Callable[P, T]:
     singimpact.inputs.InputError: <lambda> has no argument 'c': give clearance
     """
 
+    guarded = not getattr(function, TWO_WALLS, False)
+    name = function.__qualname__.removesuffix(".__init__").rpartition(".")[2]
+    first = int(function.__name__ == "__init__")  # of a class, whose model comes second
+
     @wraps(function)
     def checked(*values: P.args, **named: P.kwargs) -> T:
+        if guarded and (len(values) <= first or _may_have_walls(values[first]) or "model" in named):
+            _require_one_wall(name, values, named)
         try:
             return function(*values, **named)
         except TypeError:
@@ -190,11 +224,16 @@ def checked_keywords(function: Callable[P, T]) -> Callable[P, T]:
     return checked
 
 
-def checked_methods(kind: type[T]) -> type[T]:
-    """The class, each public method of which is `checked_keywords`."""
+def checked_methods(kind: type[T], two_walls: bool = False) -> type[T]:
+    """The class, each public method of which is `checked_keywords`.
+
+    Parameters
+    ----------
+    two_walls : whether all of them take a model with two walls.
+    """
     for name, method in list(vars(kind).items()):
         if isinstance(method, FunctionType) and (name == "__init__" or not name.startswith("_")):
-            setattr(kind, name, checked_keywords(method))
+            setattr(kind, name, checked_keywords(takes_two_walls(method) if two_walls else method))
     return kind
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from singimpact.inputs import InputError
 from singimpact.notebook import box, table as html_table
-from singimpact.status import Cause, Status
+from singimpact.status import Cause, Status, Wall
 from singimpact.store import write_table, written
 
 Array = np.ndarray[Any, Any]
@@ -36,7 +36,8 @@ UNITS = {
 
 MOST_NUMBERS = 6
 """Numbers of an array that are shown; of a longer one its shape."""
-KINDS: dict[str, type[Status] | type[Cause]] = {"status": Status, "cause": Cause}
+Words = type[Status] | type[Cause] | type[Wall]
+KINDS: dict[str, Words] = {"status": Status, "cause": Cause, "wall": Wall}
 
 
 def in_words(record: Any) -> str:
@@ -62,7 +63,7 @@ def in_words(record: Any) -> str:
     return f"{type(record).__name__}({', '.join(f'{name}={text}' for name, text in shown.items() if text)})"
 
 
-def value_in_words(value: Any, kind: type[Status] | type[Cause] | None = None) -> str:
+def value_in_words(value: Any, kind: Words | None = None) -> str:
     """One value without the type that holds it; "" of nothing.
 
     Parameters
@@ -202,6 +203,8 @@ def plain(value: Any, name: str = "") -> Any:
     """
     if name == "status" and value is not None:
         return in_status_words(value, Status)
+    if name == "wall" and value is not None:
+        return in_status_words(value, Wall)
     if name == "cause":
         return in_status_words(value, Cause) if np.any(value) else None
     if hasattr(value, "as_dict"):
@@ -217,7 +220,7 @@ def plain(value: Any, name: str = "") -> Any:
     return value
 
 
-def in_status_words(codes: Any, kind: type[Status] | type[Cause]) -> Any:
+def in_status_words(codes: Any, kind: Words) -> Any:
     """Names of statuses or causes, in the shape of their numbers."""
     if not np.ndim(codes):
         return kind(int(codes)).name

@@ -98,6 +98,19 @@ _CAUSES = {
 }
 
 
+class Wall(IntEnum):
+    """The wall of a state; arrays of walls are ``int8``.
+
+    Examples
+    --------
+    >>> Wall(1).name
+    'upper'
+    """
+
+    lower = 0
+    upper = 1
+
+
 class StatusArray(np.ndarray[Any, Any]):
     """An int8 array of statuses that says in a notebook what its numbers mean; what is computed from it is plain.
 

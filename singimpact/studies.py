@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 from singimpact.algebra.numbers import as_float, as_fraction, constant
 from singimpact.impact_oscillator import ImpactOscillator
-from singimpact.inputs import InputError, checked_keywords, refuse, require_known, whole
+from singimpact.inputs import InputError, checked_keywords, refuse, require_known, takes_two_walls, whole
 from singimpact.oscillator.model import Oscillator
 
 if TYPE_CHECKING:
@@ -133,6 +133,7 @@ def basins(
 
 
 @checked_keywords
+@takes_two_walls
 def bifurcation(
     osc: Oscillator,
     over: str,
@@ -160,8 +161,8 @@ def bifurcation(
 
     Returns
     -------
-    Bifurcation : `.values`, shape (points,), and `.events`, shape (points, kept, 3): phase, v and 1 where chatter has
-        ended; nan where an orbit had fewer; without a period the time since the event before stands in place of the
+    Bifurcation : `.values`, shape (points,), and `.events`, shape (points, kept, 3): phase, v (-v at an upper wall)
+        and 1 where chatter has ended; nan where an orbit had fewer; without a period the time since the event before stands in place of the
         phase. `.settled`, shape (points,): whether the events repeat, or where the forcing never does, whether a
         neighbour comes to the orbit; `.attractors` have the names of basins. `si.plot` draws it, `.to_csv(file)` writes
         it.

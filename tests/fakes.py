@@ -100,7 +100,7 @@ def oscillator_room():
     from singimpact.oscillator import Oscillator, read_fields
 
     class ImpactOscillator(Oscillator):
-        def impact_map(self, tau, v, *, digits=None, tolerance=None, horizon=None):  # noqa: ARG002
+        def impact_map(self, tau, v, *, digits=None, tolerance=None, horizon=None, wall=None):  # noqa: ARG002
             tau, v = np.broadcast_arrays(float_array("tau", tau), float_array("v", v))
             gone = tau >= 2
             time = np.where(gone, np.inf, 0.25)
@@ -111,9 +111,9 @@ def oscillator_room():
                     time = np.array([mpmath.mpf(1) / 3 for _ in tau])
             status = np.where(gone, 3, 0).astype(np.int8)
             proofs = {"certified": np.full(tau.shape, None), "notes": {0: "not certified: a fake"}}
-            return SimpleNamespace(tau=tau + 0.25, v=v, flight_time=time, status=status, **proofs)
+            return SimpleNamespace(tau=tau + 0.25, v=v, flight_time=time, status=status, wall=None, **proofs)
 
-        def orbit(self, tau, v, impacts=200, horizon=None):  # noqa: ARG002
+        def orbit(self, tau, v, impacts=200, horizon=None, wall=None):  # noqa: ARG002
             tau, v = float_array("tau", tau), float_array("v", v)
             kinds = np.array(["impact", "rest"])
             return Orbit(self, np.array([tau, tau + 0.5]), np.array([v, 0]), kinds, [("sticking", 1.5, 2)], 2.0)

@@ -1,11 +1,13 @@
 """`Certified`: a real number with a radius within which the true value lies, made from a ball."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from fractions import Fraction
 from types import SimpleNamespace
 from typing import Any
 
-from singimpact.algebra.precision import bits_at, digits_at, for_user
+from singimpact.algebra.precision import bits_at, digits_at, for_user, negative
 
 
 @dataclass(frozen=True)
@@ -47,6 +49,18 @@ class Certified:
             # a ball of one point would be no ball for another enclosure to lie in
             radius = 1.01 * (radius + abs(value) * unit or unit)
             return {"value": text_of(self.value, self.digits + 2), "radius": text_of(radius, 3)}
+
+    @property
+    def negative(self) -> Certified:
+        """The number times -1.
+
+        Examples
+        --------
+        >>> import mpmath
+        >>> Certified(mpmath.mpf("0.5"), mpmath.mpf("1e-16"), 15).negative
+        Certified(-0.5 +- 1.0e-16)
+        """
+        return Certified(negative(self.value), self.radius, self.digits)
 
     def contains(self, number: Any) -> bool:
         """Whether a number, taken exactly, lies within the radius.

@@ -149,6 +149,28 @@ def for_user(value: Any) -> Any:
     return mpmath.mp.make_mpf(value._mpf_)
 
 
+def negative(value: Any) -> Any:
+    """A number, or an array of numbers, times -1; those of mpmath, whose minus rounds, keep all their bits.
+
+    Examples
+    --------
+    >>> import mpmath
+    >>> with mpmath.workdps(30):
+    ...     third = mpmath.mpf(1) / 3
+    >>> negative(third) + third == 0
+    True
+    """
+    if hasattr(value, "_mpf_"):
+        from mpmath.libmp import mpf_neg
+
+        return type(value).context.make_mpf(mpf_neg(value._mpf_))
+    if getattr(getattr(value, "dtype", None), "kind", "f") != "O":
+        return -value
+    turned = value.copy()
+    turned.ravel()[:] = [negative(each) for each in value.ravel().tolist()]
+    return turned
+
+
 def _own_context() -> Any:
     with _LOCK:
         return _made_context()

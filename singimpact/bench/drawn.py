@@ -145,6 +145,6 @@ def compile_entries(osc: ImpactOscillator) -> None:
         flown = compiled_model(osc)
         for name in flown.machine.emitted.entries:
             flown.machine.compile_here(name)
-        for part in (flown.recurrence, flown.law):
+        for part in (*flown.recurrences, *flown.laws):
             if part is not None:
                 part.compile_here()

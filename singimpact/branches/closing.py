@@ -32,6 +32,20 @@ Turn = tuple[float, float]
 """A local minimum of x - c in a flight: its time after the launch, and x - c there."""
 
 
+class Leg(NamedTuple):
+    """A flight from one wall to another.
+
+    Parameters
+    ----------
+    family : the models that it is flown by. law : those whose restitution it meets. gap : x - c where it ends, at
+        another wall, whose model has x -> -x; None at the wall of the launch.
+    """
+
+    family: Family
+    law: Family
+    gap: float | None = None
+
+
 class Characteristic(NamedTuple):
     """a_0, a_1, a_2 of a_0 + a_1 mu + a_2 mu^2, whose zeros are the multipliers of an orbit."""
 
@@ -132,6 +146,10 @@ class Closing:
         """Names of the free parameters."""
         return self.family.over
 
+    def leg(self, i: int) -> Leg:  # noqa: ARG002
+        """The walls of flight i."""
+        return Leg(self.family, self.family)
+
     @property
     def plastic(self) -> bool:
         """Whether the restitution is 0 along the family."""
@@ -174,10 +192,12 @@ class Closing:
         slopes = self._slopes_of_period(point)
         miss, slope, wrap = np.zeros(2 * n), np.zeros((2 * n, 2 * n + len(over))), np.zeros((2 * n, 2 * n))
         for i, (launch, before, v, time) in enumerate(self.flights(point)):
-            end = self.family.end(values, launch, v, time)
-            velocity, factor, by_law = self.family.rebound(float(end.place[1]), values)
+            leg = self.leg(i)
+            end, side = leg.family.end(values, launch, v, time), 1.0 if leg.gap is None else -1.0
+            velocity, factor, by_law = leg.law.rebound(side * float(end.place[1]), values)
+            factor *= side
             after, last = (i + 1) % n, i == n - 1
-            miss[2 * i], miss[2 * i + 1] = end.place[0], velocity - point[n + after]
+            miss[2 * i], miss[2 * i + 1] = end.place[0] - (leg.gap or 0.0), velocity - point[n + after]
             # rho changes the second condition, and so every derivative in its row, by its slope
             scale = np.array([1.0, factor])
             if i or self.clocked:  # the first impact of a cycle stays at time 0

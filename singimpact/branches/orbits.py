@@ -12,13 +12,15 @@ from singimpact.algebra.numbers import as_float
 from singimpact.handed_on import Study
 from singimpact.inputs import InputError
 from singimpact.oscillator.model import Oscillator
-from singimpact.result import Result, Results
+from singimpact.result import Result, Results, plain
 from singimpact.status import Status
 
 if TYPE_CHECKING:
     from singimpact.branches.krawczyk import EnclosedOrbit
 
 Sentences = tuple[str, ...]
+EQUAL = 1e-9
+"""Halves of an orbit that differ by less, of its period and of its largest velocity, are equal."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,6 +38,7 @@ class PeriodicOrbit(Result):
     visible : whether no flight is below the wall and every v >= 0; a virtual orbit solves the equations alone.
     x : of an orbit without impacts, x at the time `tau`.
     span : of a limit cycle its period; None where the forcing has one.
+    wall : int8, of each impact, of a model with two walls; else None.
 
     Notes
     -----
@@ -54,6 +57,7 @@ class PeriodicOrbit(Result):
     visible: bool = True
     x: Any = None
     span: Any = None
+    wall: Any = None
 
     branch, manifold, homoclinic_points = Study(), Study(), Study()  # functions of `singimpact`, documented there
 
@@ -69,12 +73,12 @@ class PeriodicOrbit(Result):
             "tau": np.array(self.tau),
             "v": np.array(self.v),
             "multipliers": np.array(self.multipliers),
-        }
+        } | ({} if self.wall is None else {"wall": plain(self.wall, "wall"), "symmetric": self.symmetric})
 
     def arrays(self) -> dict[str, tuple[tuple[str, ...], Any]]:
         """States by impact, and both multipliers."""
         values = self.as_dict()
-        states = {name: (("impact",), values[name]) for name in ("tau", "v")}
+        states = {name: (("impact",), values[name]) for name in ("tau", "v", "wall") if name in values}
         return states | {"multipliers": (("multiplier",), values["multipliers"])}
 
     @property
@@ -86,6 +90,26 @@ class PeriodicOrbit(Result):
     def stable(self) -> bool:
         """Whether both multipliers are below 1 in size."""
         return bool(np.all([abs(complex(each)) < 1 for each in self.multipliers]))
+
+    @property
+    def symmetric(self) -> bool:
+        """Whether half a period later the orbit is its mirror image at the other wall.
+
+        Examples
+        --------
+        >>> from singimpact.impact_oscillator import linear
+        >>> pair = linear("2.8", "-0.5", "0.8").replace(upper="0.5")
+        >>> [orbit.symmetric for orbit in pair.periodic("lu", 1)]
+        [True]
+        """
+        if self.wall is None or len(self.wall) % 2 or self.k % 2 == 0:
+            return False
+        half = len(self.wall) // 2
+        tau, v = (np.asarray(row, dtype=float) for row in (self.tau, self.v))
+        late = (tau[half:] - tau[:half]) / self.period - 0.5
+        fast = max(float(np.abs(v).max()), 1e-300)
+        mirrored = bool((self.wall[half:] != self.wall[:half]).all())
+        return mirrored and bool(np.abs(late).max() < EQUAL and np.abs(v[half:] - v[:half]).max() < EQUAL * fast)
 
     def certified(self, digits: int = 30) -> EnclosedOrbit:
         """The orbit, proved to exist and to be the only one in a box, with its multipliers.
@@ -104,6 +128,8 @@ class PeriodicOrbit(Result):
         """
         from singimpact.branches.krawczyk import enclosed_orbit
 
+        if self.wall is not None:
+            raise InputError(f"{self!r} is not certified: proofs are of orbits at one wall")
         if self.span is not None:
             raise InputError(f"{self!r} is not certified: proofs are of orbits with the period of a forcing")
         if self.kind != "impacts":
@@ -119,6 +145,9 @@ class PeriodicOrbit(Result):
         words = cycle or {"chatter": f"(inf, {self.k}) orbit: chatter and rest", "free": "orbit without impact"}.get(
             self.kind, f"({self.n:.0f}, {self.k}) orbit"
         )
+        if self.wall is not None:
+            letters = "".join("lu"[wall] for wall in self.wall.tolist())
+            words = f"({letters}, {self.k}) orbit{', symmetric' if self.symmetric else ''}"
         kind = ("stable" if self.stable else "unstable") if self.visible else "virtual"
         states = ", ".join(f"({float(t):.6g}, {float(v):.6g})" for t, v in zip(self.tau[:4], self.v[:4], strict=True))
         more = ", ..." if len(self.tau) > 4 else ""

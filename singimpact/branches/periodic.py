@@ -27,6 +27,7 @@ from singimpact.branches.orbits import PeriodicOrbit, PeriodicOrbits, same_state
 from singimpact.branches.resting import chatter_orbits, free_orbits
 from singimpact.branches.solutions import closing_of, orbit_at
 from singimpact.branches.starts import closed_from, grid_of_starts, phases_and_speeds, two_impacts
+from singimpact.branches.wall_closing import closed_words, closing_of_word, word_of
 from singimpact.flights.enclosures.equation import Refused
 from singimpact.flights.family import family
 from singimpact.flights.impact_map import checked_digits
@@ -64,6 +65,7 @@ def periodic(
     ----------
     osc : the model; f and g have a common period in t, or are free of t: then the orbits are limit cycles.
     n : impacts, a whole number; `math.inf` for orbits that chatter to rest and lift off; 0 for orbits without impact.
+        Of a model with two walls a word of the letters l and u, such as "lu": the walls in the order of the impacts.
     k : periods, a whole number >= 1; None for limit cycles, which have no forcing to count.
     start : states to start from in place of a grid: (tau, v), or a sequence of n of them, or a `PeriodicOrbit`.
     v : (low, high), for models without a closed form and n = 1 or 2: `.complete` then tells by a proof whether there
@@ -91,6 +93,8 @@ def periodic(
     >>> print([f"{orbit.v[0]:.12f}" for orbit in found], found.complete)
     ['0.533333333333'] True
     """
+    if osc.upper is not None:
+        return _words(osc, n, k, start, (v, digits))
     if osc.autonomous:
         return _limit_cycles(osc, n, (k, start, v, digits))
     if osc.period is None:
@@ -120,6 +124,31 @@ def periodic(
     if digits is not None:
         orbits = [in_digits(osc, orbit, checked_digits(digits)) for orbit in orbits]
     return PeriodicOrbits(orbits, doubts)
+
+
+def _words(osc: Oscillator, word: Any, k: Any, start: Any, others: tuple[Any, Any]) -> PeriodicOrbits:
+    """The orbits between two walls whose impacts have a word."""
+    for name, value in zip(("v", "digits"), others, strict=True):
+        if value is not None:
+            raise refuse(name, value, f"no {name} for a model with two walls: osc.one_wall('lower') has one")
+    if osc.period is None:
+        raise InputError("the forcing has no period: a periodic orbit between two walls needs one")
+    closing = closing_of_word(osc, word_of(word), _count("k", k, 1))
+    states = None if start is None else _states_to_start(start)
+    points = closed_words(osc, closing, states)
+    orbits = [orbit for orbit in _judged_points(osc, closing, points) if orbit.visible]
+    if start is not None and not orbits:
+        raise refuse("start", start, f"a state near a ({word}, {k}) orbit; Newton's method finds none")
+    return PeriodicOrbits(orbits, (SEARCHED if start is None else "found from the start given",))
+
+
+def _states_to_start(start: Any) -> tuple[Array, Array]:
+    """Phase and velocity of the first impact."""
+    try:
+        tau, v = (np.array([as_float(constant("start", number))]) for number in start)
+    except (TypeError, ValueError):
+        raise refuse("start", start, "(tau, v) of the first impact") from None
+    return tau, v
 
 
 def _count(name: str, value: Any, least: int) -> int:
@@ -240,6 +269,12 @@ def _judged(osc: Oscillator, n: int, k: int, points: list[Array]) -> list[Period
     """Orbits of closed points, each once, in the order of the first phase; those that close sooner are left out."""
     closing = closing_of(osc, n, k, ())
     assert isinstance(closing, Closing)
+    return _judged_points(osc, closing, points)
+
+
+def _judged_points(osc: Oscillator, closing: Closing, points: list[Array]) -> list[PeriodicOrbit]:
+    """Orbits of closed points, as `_judged` gives them."""
+    n = closing.n
     distinct: list[PeriodicOrbit] = []
     for point in points:
         if not (osc.plastic or point[n : 2 * n].max() > SETTINGS.least) or point[n : 2 * n].min() < -SETTINGS.least:
@@ -256,6 +291,8 @@ def _sooner(orbit: PeriodicOrbit, closing: Closing) -> bool:
     fast = max(float(np.max(orbit.v)), 1e-300)
     for fewer in range(1, n):
         if n % fewer or (k * fewer) % n:
+            continue
+        if orbit.wall is not None and (np.roll(orbit.wall, -fewer) != orbit.wall).any():
             continue
         gaps = np.abs(np.roll(orbit.tau, -fewer)[: n - fewer] - orbit.tau[: n - fewer] - k * fewer / n * period)
         if gaps.max(initial=0.0) < SETTINGS.apart * period and (

@@ -11,6 +11,7 @@ from singimpact.branches.closing import Closing, FreeClosing
 from singimpact.branches.limit_cycle import CycleClosing
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.resting import free_orbit_at
+from singimpact.branches.wall_closing import WallClosing
 from singimpact.flights.family import family
 from singimpact.flights.impact_map import impact_map
 from singimpact.oscillator.model import Oscillator
@@ -87,6 +88,7 @@ def orbit_at(closing: Closing, point: Array, osc: Oscillator | None = None, seen
         k,
         visible=seen,
         span=None if closing.clocked else float(point[0]),
+        wall=np.array(closing.word, np.int8)[order] if isinstance(closing, WallClosing) else None,
     )
 
 
@@ -106,10 +108,13 @@ def visible(closing: Closing, point: Array, osc: Oscillator) -> bool:
     if not ((v >= 0) & (times > 0)).all():
         return False
     launches = (float(tau[0]), float(v[0])) if tau.size == 1 else (tau, v)  # two floats are faster
-    step = impact_map(osc, *launches)
+    walls = np.array(closing.word) if isinstance(closing, WallClosing) else None
+    step = impact_map(osc, *launches, wall=walls)
     flown, status = np.atleast_1d(step.flight_time), np.atleast_1d(step.status)
     with np.errstate(invalid="ignore"):
         same = (np.abs(flown - times) <= SETTINGS.near * times) & np.isin(status, (Status.hit, Status.graze))
+        if walls is not None:
+            same &= step.wall == np.roll(walls, -1)
     left = status == Status.unresolved
     if not (same | left).all():
         return False

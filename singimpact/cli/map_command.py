@@ -4,10 +4,10 @@ from typing import Any
 
 import click
 
-from singimpact.cli.model_options import model_options, take_model
+from singimpact.cli.model_options import model_options, take_model, wall_option
 from singimpact.cli.output import as_json_text, columns, emit, number_text, output_options
 from singimpact.inputs import InputError
-from singimpact.status import Status
+from singimpact.status import Status, Wall
 
 FIELDS = ("tau", "v", "flight_time", "status")
 
@@ -18,12 +18,14 @@ FIELDS = ("tau", "v", "flight_time", "status")
 @click.option("--v", "vs", metavar="NUMBER", multiple=True, required=True, help="Launch velocity; may be repeated.")
 @click.option("--digits", type=click.IntRange(1, 10_000), help="Significant digits.  [default: a double]")
 @click.option("--horizon", metavar="NUMBER", help="Longest flight time that is searched.")
+@wall_option
 @output_options
 def command(
     taus: tuple[str, ...],
     vs: tuple[str, ...],
     digits: int | None,
     horizon: str | None,
+    wall: str | None,
     as_json: bool,
     output: str | None,
     **options: Any,
@@ -34,7 +36,7 @@ def command(
     """
     oscillator = take_model(options)
     states = _paired(taus, vs)
-    keywords: dict[str, Any] = {"digits": digits, "horizon": horizon}
+    keywords: dict[str, Any] = {"digits": digits, "horizon": horizon, "wall": wall}
     step = oscillator.impact_map(
         [tau for tau, _ in states], [v for _, v in states], **{key: value for key, value in keywords.items() if value}
     )
@@ -44,9 +46,12 @@ def command(
         if digits is not None:
             for at, step_ in enumerate(steps):
                 step_ |= _certified(step, at)
+        if step.wall is not None:
+            for step_, code in zip(steps, step.wall.tolist(), strict=True):
+                step_["wall"] = Wall(code).name
         emit(as_json_text({"model": oscillator.to_dict(), "steps": steps}), output)
     else:
-        emit(_table(states, rows), output)
+        emit(_table(states, rows, None if step.wall is None else [Wall(code).name for code in step.wall]), output)
 
 
 def _paired(taus: tuple[str, ...], vs: tuple[str, ...]) -> list[tuple[str, str]]:
@@ -78,11 +83,13 @@ def _told(states: list[tuple[str, str]], rows: list[list[Any]]) -> list[dict[str
     ]
 
 
-def _table(states: list[tuple[str, str]], rows: list[list[Any]]) -> str:
-    header = ["tau", "v", "flight time", "next tau", "next v", "status"]
+def _table(states: list[tuple[str, str]], rows: list[list[Any]], walls: list[str] | None) -> str:
+    header = ["tau", "v", "flight time", "next tau", "next v", "status"] + ["next wall"] * (walls is not None)
     cells = [
-        [*state, str(time), str(tau), str(v), status.name]
-        for state, (tau, v, time, status) in zip(states, rows, strict=True)
+        [*state, str(time), str(tau), str(v), status.name, *wall]
+        for state, (tau, v, time, status), wall in zip(
+            states, rows, [[]] * len(rows) if walls is None else [[name] for name in walls], strict=True
+        )
     ]
     notes = [
         f"{status.name}: {status.sentence}" for status in sorted({row[3] for row in rows}) if status is not Status.hit

@@ -25,6 +25,8 @@ LINEAR = {
     "stiffness": "coefficient of x",
     "amplitude": "amplitude of the forcing",
     "phase": "phase of the forcing",
+    "upper": "position of a second wall above",
+    "upper_restitution": "that of the second wall; without it that of the first",
 }
 
 
@@ -34,7 +36,8 @@ def model_options(function: Function) -> Function:
     Numbers stay the text that was written (``pi/2.8``, ``1/3``), so that the model is exact.
     """
     for name in reversed(LINEAR):
-        function = click.option(f"--{name}", metavar="NUMBER", help=f"Linear model: {LINEAR[name]}.")(function)
+        option = f"--{name.replace('_', '-')}"
+        function = click.option(option, metavar="NUMBER", help=f"Linear model: {LINEAR[name]}.")(function)
     return click.option("--model", metavar="FILE", help="TOML file: f, g, clearance, restitution, parameters.")(
         function
     )
@@ -68,6 +71,14 @@ def _from_file(path: str, numbers: dict[str, str]) -> ImpactOscillator:
     from singimpact.impact_oscillator import read_model
 
     return read_model(path)
+
+
+def wall_option(function: Function) -> Function:
+    """``--wall lower`` or ``--wall upper``."""
+    kinds = click.Choice(["lower", "upper"])
+    return click.option("--wall", type=kinds, help="Wall of the state, of a model with two walls.  [default: lower]")(
+        function
+    )
 
 
 # Periodic orbits, and the branches through them.

@@ -5,7 +5,7 @@ from typing import Any
 
 import click
 
-from singimpact.cli.model_options import model_options, take_model
+from singimpact.cli.model_options import model_options, take_model, wall_option
 from singimpact.cli.output import PICTURES, as_json_text, columns, emit, output_options
 from singimpact.inputs import refuse
 from singimpact.store import written
@@ -19,9 +19,17 @@ from singimpact.store import written
     "--impacts", type=click.IntRange(1, 10_000_000), default=200, show_default=True, help="Number of impacts."
 )
 @click.option("--horizon", metavar="NUMBER", help="Longest flight time that is searched.")
+@wall_option
 @output_options
 def command(
-    tau: str, v: str, impacts: int, horizon: str | None, as_json: bool, output: str | None, **options: Any
+    tau: str,
+    v: str,
+    impacts: int,
+    horizon: str | None,
+    wall: str | None,
+    as_json: bool,
+    output: str | None,
+    **options: Any,
 ) -> None:
     """An orbit of the impact map: impacts, chatter, rest on the wall.
 
@@ -29,7 +37,7 @@ def command(
     """
     check_ending(output, as_json)
     oscillator = take_model(options)
-    orbit = oscillator.orbit(tau, v, impacts=impacts, horizon=horizon)
+    orbit = oscillator.orbit(tau, v, impacts=impacts, horizon=horizon, wall=wall)
     if output is not None and not as_json and Path(output).suffix.lower() in PICTURES:
         draw(orbit, output)
     elif as_json:
@@ -67,6 +75,7 @@ def _as_listed(orbit: Any) -> dict[str, Any]:
 
 def _table(orbit: Any) -> str:
     listed = _as_listed(orbit)
-    impacts = [[str(at), str(i["tau"]), str(i["v"]), i["kind"]] for at, i in enumerate(listed["impacts"])]
+    names = ["tau", "v", *(["wall"] if orbit.wall is not None else []), "kind"]
+    impacts = [[str(at), *(str(event[name]) for name in names)] for at, event in enumerate(listed["impacts"])]
     phases = [[p["kind"], str(p["start"]), str(p["end"])] for p in listed["phases"]]
-    return columns(["", "tau", "v", "kind"], impacts) + "\n\n" + columns(["phase", "from tau", "to tau"], phases)
+    return columns(["", *names], impacts) + "\n\n" + columns(["phase", "from tau", "to tau"], phases)

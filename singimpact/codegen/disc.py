@@ -56,9 +56,8 @@ class DiscWriter:
 
     def radius(self, tree: Expression) -> str:
         """The name of the radius of a part that moves."""
-        match tree:
-            case Name(name):
-                return LEAVES[name]
+        if isinstance(tree, Name):
+            return LEAVES[tree.name]
         if tree not in self.known:
             text = self._bound(tree) + (f" + {self.unit} * {self._rounded(tree)}" if self.unit else "")
             name = f"r_{len(self.known)}"
@@ -248,8 +247,8 @@ for k in range(2, n + 1):
 def disc_source(writer: DiscWriter, parts: list[Expression]) -> str:
     """The text of `disc(X, W, n, R, p)`: the bound for the sum of the parts, and which suspect has none, else 0."""
     total = [writer.radius(part) for part in parts]
-    sums = [line.format("X", "r_x") for line in SUMS]
-    return _function("disc(X, W, n, R, p)", [*sums, *writer.lines, f"return {_sum(total)}, 0"])
+    lines = [*(line.format("X", "r_x") for line in SUMS), *writer.lines, f"return {_sum(total)}, 0"]
+    return _function("disc(X, W, n, R, p)", lines)
 
 
 def columns_source(writer: DiscWriter, push: list[Expression], by_x: Expression, by_xdot: Expression) -> str:

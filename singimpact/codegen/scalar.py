@@ -68,8 +68,7 @@ def _source(tree: Expression, variables: frozenset[str], constants: list[Express
         case Power(base, Number(Fraction(numerator=-1, denominator=1))):
             return f"1 / {_bracketed(base, variables, constants)}"
         case Power(base, exponent):
-            powers = (_bracketed(operand, variables, constants) for operand in (base, exponent))
-            return "**".join(powers)
+            return "**".join(_bracketed(operand, variables, constants) for operand in (base, exponent))
         case Call("sqrt", argument):
             return f"({_source(argument, variables, constants)}) ** 0.5"
         case Call(function, argument):

@@ -37,15 +37,7 @@ from singimpact.codegen.disc import (
 )
 from singimpact.inputs import InputError, refuse
 
-
-@dataclass(frozen=True)
-class RecurrenceSettings:
-    """`rows` of a recurrence at most; one of 600 takes 10 ms a Taylor step in Python and 20 s to compile."""
-
-    rows: int = 600
-
-
-SETTINGS = RecurrenceSettings()
+MOST_ROWS = 600  # of a recurrence; one of 600 takes 10 ms a Taylor step in Python and 20 s to compile
 
 
 @dataclass(frozen=True)
@@ -98,12 +90,12 @@ class _Writer:
 
     def row(self, affine: bool = False) -> _Series:
         self.rows += 1
-        if self.rows > SETTINGS.rows:
+        if self.rows > MOST_ROWS:
             name, tree = self.whole
             raise refuse(
                 name,
                 tree,
-                f"an expression with at most {SETTINGS.rows} products, sums and functions, its derivatives "
+                f"an expression with at most {MOST_ROWS} products, sums and functions, its derivatives "
                 f"included; a flight computes the Taylor coefficients of each, and this one has more",
             )
         return _Series(f"W[{self.rows - 1}, {{}}]", affine)
@@ -350,15 +342,13 @@ def _driven(target: _Series, inner: _Series, slope: _Series, sign: str = "") -> 
 
 
 def _exp(writer: _Writer, argument: Expression) -> _Series:
-    inner = _series(writer, argument)
-    target = writer.row()
+    inner, target = _series(writer, argument), writer.row()
     writer.starts(target, f"exp({inner('0')})", *_driven(target, inner, target))
     return target
 
 
 def _circular(writer: _Writer, argument: Expression) -> tuple[_Series, _Series]:
-    inner = _series(writer, argument)
-    sine, cosine = writer.row(), writer.row()
+    inner, sine, cosine = _series(writer, argument), writer.row(), writer.row()
     writer.known[Call("sin", argument)], writer.known[Call("cos", argument)] = sine, cosine
     writer.starts(sine, f"sin({inner('0')})", *_driven(sine, inner, cosine))
     writer.starts(cosine, f"cos({inner('0')})", *_driven(cosine, inner, sine, "-"))
@@ -382,8 +372,7 @@ def _log(writer: _Writer, argument: Expression) -> _Series:
 
 def _logistic(writer: _Writer, argument: Expression) -> _Series:
     """y = 1/(1 + e^w) from y' = -y (1 - y) w'; neither y nor y (1 - y) starts from a difference or from e^w > 1."""
-    inner = _series(writer, argument)
-    target, slope = writer.row(), writer.row()
+    inner, target, slope = _series(writer, argument), writer.row(), writer.row()
     writer.starts(
         target,
         f"(exp(-abs({inner('0')})) if {inner('0')} > 0 else one) / (1 + exp(-abs({inner('0')})))",
@@ -403,8 +392,7 @@ def _logistic(writer: _Writer, argument: Expression) -> _Series:
 def _softplus(writer: _Writer, argument: Expression) -> _Series:
     """y = log(1 + e^w) from y' = w'/(1 + e^-w)."""
     logistic = Power(Sum((number(1), Call("exp", multiply(number(-1), argument)))), number(-1))
-    inner, slope = _series(writer, argument), _series(writer, logistic)
-    target = writer.row()
+    inner, slope, target = _series(writer, argument), _series(writer, logistic), writer.row()
     writer.starts(
         target,
         f"({inner('0')} if {inner('0')} > 0 else zero) + log1p(exp(-abs({inner('0')})))",
@@ -430,8 +418,7 @@ def _atan(writer: _Writer, argument: Expression) -> _Series:
 
 def _riccati(writer: _Writer, argument: Expression, function: str, start: str, sign: str) -> _Series:
     """y' = (1 + sign y^2) b'; the row of 1 + sign y^2 starts from `start`, where nothing cancels."""
-    inner = _series(writer, argument)
-    target, slope = writer.row(), writer.row()
+    inner, target, slope = _series(writer, argument), writer.row(), writer.row()
     # the derivative of the call, as `algebra.derivatives` writes it, need not be computed from its difference
     writer.known[slope_of_call(Call(function, argument))] = slope
     writer.starts(target, f"{function}({inner('0')})", *_driven(target, inner, slope))

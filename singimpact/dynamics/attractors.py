@@ -127,11 +127,12 @@ def new_attractors(
 
 
 def states_of(model: Oscillator, code: int, tau: float, v: float) -> tuple[Array, Array]:
-    """tau and v of all impacts of a periodic orbit, from one of them on."""
+    """tau and v of all impacts of a periodic orbit, from one of them on; v < 0 of those of an upper wall."""
     states = [(tau, v)]
     for _ in range(code // PLACES - 1):
-        ends = iterate(model, *states[-1], 1)
-        states.append((float(ends.tau), float(ends.v)))
+        at, speed = states[-1]
+        ends = iterate(model, at, abs(speed), 1, wall=None if model.upper is None else int(speed < 0))
+        states.append((float(ends.tau), -float(ends.v) if ends.wall else float(ends.v)))
     times, speeds = np.array(states).T
     return times, speeds
 

@@ -32,6 +32,7 @@ from singimpact.dynamics.attractors import (
 from singimpact.dynamics.behaviours import LongRun, behaviour
 from singimpact.dynamics.free_motion import free_fates
 from singimpact.dynamics.long_run import chaotic
+from singimpact.dynamics.lyapunov import lyapunov
 from singimpact.dynamics.orbit import Orbit, dropped_orbit, orbit
 from singimpact.dynamics.phases import Times, phases_of
 from singimpact.dynamics.settling import Study
@@ -58,6 +59,8 @@ class BifurcationSettings:
     # events of the longest period that is looked for, and relative distance of events that repeat
     period: int = 64
     close: float = 1e-6
+    # impacts, between two walls, of the exponents that tell chaos from an orbit that has not settled
+    exponent: int = 4000
 
 
 SETTINGS = BifurcationSettings()
@@ -225,13 +228,24 @@ def _followed(first: Orbit, flown: tuple[int, int, int]) -> tuple[Orbit, Row]:
     last, count, block = first, flown[0], flown[0]
     while (row := _ending(last)) is None and count < flown[2]:
         block = min(2 * block, flown[2] - count)
-        last = orbit(last.oscillator, _phase(last, float(last.tau[-1])), float(last.v[-1]), block)
+        last = orbit(last.oscillator, _phase(last, float(last.tau[-1])), float(last.v[-1]), block, wall=_wall(last))
         count += block
     if row is None:
         tau, v = np.array([_phase(last, float(last.tau[-1]))]), last.v[-1:]
-        grows = last.kind[-1] == "impact" and chaotic(last.oscillator, tau, v, max(float(last.v.max()), 1e-300))[0]
+        if last.kind[-1] != "impact":
+            grows = False
+        elif last.wall is None:
+            grows = bool(chaotic(last.oscillator, tau, v, max(float(last.v.max()), 1e-300))[0])
+        else:
+            found = lyapunov(last.oscillator, tau[0], v[0], SETTINGS.exponent, transient=0, wall=_wall(last))
+            grows = bool(found.exponents[0] > 3 * found.error[0])
         row = (CHAOS if grows else OTHER, 0.0, 0.0)
     return last, row
+
+
+def _wall(flown_orbit: Orbit) -> int | None:
+    """The wall of the last event; None of a model with one."""
+    return None if flown_orbit.wall is None else int(flown_orbit.wall[-1])
 
 
 def _phase(flown_orbit: Orbit, time: float) -> float:
@@ -255,8 +269,8 @@ def _ending(flown_orbit: Orbit) -> Row | None:
     if last == "sticking" and not np.isfinite(flown_orbit.phases[-1][2]):
         return (CHATTER, -1.0, 0.0)
     shown = np.isin(flown_orbit.kind, ("impact", "graze", "complete"))
-    tau, v = flown_orbit.tau[shown], flown_orbit.v[shown]
-    phases, fast = phases_of(flown_orbit.oscillator), max(float(v.max(initial=0.0)), 1e-300)
+    tau, v = flown_orbit.tau[shown], flown_orbit.speeds[shown]
+    phases, fast = phases_of(flown_orbit.oscillator), max(float(np.abs(v).max(initial=0.0)), 1e-300)
     if not phases.repeats:
         rests = np.count_nonzero(flown_orbit.kind == "release") > 1
         return (RESTING, 0.0, 0.0) if rests else _response(flown_orbit, fast)
@@ -296,9 +310,11 @@ def _cycle(spans: Array, v: Array) -> int:
 
 def _orbit(flown_orbit: Orbit, n: int, fast: float) -> Row | None:
     """The row of an attracting orbit of n impacts with the last impact, which is not on its way past or towards one."""
-    end, v = flown_orbit.tau[flown_orbit.kind == "impact"], flown_orbit.v[flown_orbit.kind == "impact"]
+    end, v = flown_orbit.tau[flown_orbit.kind == "impact"], flown_orbit.speeds[flown_orbit.kind == "impact"]
     phases = phases_of(flown_orbit.oscillator)
     turns, tau = phases.periods(end[-1:] - end[-1 - n]).astype(np.int64), phases.of(end[-1:])
+    if flown_orbit.wall is not None:
+        return (n * PLACES + int(turns[0]), float(tau[0]), float(v[-1]))
     beside = nearby_orbits(flown_orbit.oscillator, tau, v[-1:], np.array([n]), turns, fast)
     away = apart((beside.tau, beside.v), (tau, v[-1]), phases, fast)
     if not np.where(beside.found, away < SETTINGS.close, beside.returned)[0]:
@@ -331,18 +347,23 @@ def _continued(moved: Oscillator, last: Orbit, row: Row, impacts: int) -> Orbit:
     """The orbit of a model from the last state of another one; the phase within the period is kept."""
     if row[0] in (CYCLE, STILL):  # from the least x of the cycle, or the rest
         height = row[2] if row[0] == CYCLE else row[1]
-        x = max(as_float(last.oscillator.clearance) + height, as_float(moved.clearance))
+        x = _between(moved, as_float(last.oscillator.clearance) + height)
         return dropped_orbit(moved, (x, 0.0, 0.0), impacts)
     period, before = phases_of(moved).unit, phases_of(last.oscillator).unit
     away = bool(last.phases) and last.phases[-1][0] == "no_return"
     time = min(last.end, float(last.tau[-1]) + SETTINGS.free * before) if away else float(last.tau[-1])
     tau = _phase(last, time) / before * period
     if not away:
-        return orbit(moved, tau, float(last.v[-1]), impacts)
+        return orbit(moved, tau, float(last.v[-1]), impacts, wall=_wall(last))
     # off the wall: the motion without impact is carried on
     state = last.sample(time)
-    x = max(float(state.x), as_float(moved.clearance))
-    return dropped_orbit(moved, (x, float(state.xdot), tau), impacts)
+    return dropped_orbit(moved, (_between(moved, float(state.x)), float(state.xdot), tau), impacts)
+
+
+def _between(moved: Oscillator, x: float) -> float:
+    """A place at or above the wall, and at or below an upper one."""
+    x = max(x, as_float(moved.clearance))
+    return x if moved.upper is None else min(x, as_float(moved.upper))
 
 
 def _last_events(flown_orbit: Orbit, row: Row, flown: tuple[int, int, int]) -> Array:
@@ -352,7 +373,7 @@ def _last_events(flown_orbit: Orbit, row: Row, flown: tuple[int, int, int]) -> A
     """
     repeats = row[0] not in (OTHER, CHAOS, STUCK)
     shown, count = np.isin(flown_orbit.kind, ("impact", "graze", "complete")), flown[1]
-    rows = np.stack([flown_orbit.tau, flown_orbit.v, flown_orbit.kind == "complete"], axis=1)[shown]
+    rows = np.stack([flown_orbit.tau, flown_orbit.speeds, flown_orbit.kind == "complete"], axis=1)[shown]
     if flown_orbit.oscillator.period is None:
         rows[:, 0] = np.diff(rows[:, 0], prepend=flown_orbit.tau[0])
     last = rows[max(flown[0] - count, 0) :][-count:]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
+from functools import partial
 from itertools import islice
 from math import ceil, log
 from typing import Any
@@ -26,7 +27,8 @@ from singimpact.flights.impact_map import checked_digits, impact_map
 from singimpact.flights.kernels.chatter import CLOSE, COMPLETED, EXHAUSTED, LIFTED, NO_ROOM, REPEATS, TOO_WIDE
 from singimpact.flights.orbits import Segment, orbit_segment
 from singimpact.flights.states import States
-from singimpact.inputs import whole
+from singimpact.flights.walls import at_walls
+from singimpact.inputs import refuse, whole
 from singimpact.oscillator.model import Oscillator, require_smooth_rho
 from singimpact.oscillator.rho_series import series_of_rho
 from singimpact.oscillator.wall_acceleration import acceleration
@@ -77,6 +79,7 @@ class ChatterLimit(Result):
         None.
     cause : int8, see `singimpact.status.Cause`: why the status is `unresolved`.
     oscillator, launch : beside `certified`, the model and the exact launch time and velocity.
+    wall : int8, where the impacts accumulate, or of the last one, of a model with two walls; else None.
     """
 
     tau: Any
@@ -87,6 +90,7 @@ class ChatterLimit(Result):
     cause: Any = 0
     oscillator: Oscillator | None = field(default=None, repr=False)
     launch: tuple[Expression, ...] = field(default=(), repr=False)
+    wall: Any = None
 
     __repr__ = in_words
 
@@ -108,7 +112,13 @@ class ChatterLimit(Result):
 
 
 def chatter_limit(
-    osc: Oscillator, tau: Any, v: Any, *, digits: int | None = None, impacts: int = ENDING.impacts
+    osc: Oscillator,
+    tau: Any,
+    v: Any,
+    *,
+    digits: int | None = None,
+    impacts: int = ENDING.impacts,
+    wall: Any = None,
 ) -> ChatterLimit:
     """The time at which infinitely many impacts accumulate.
 
@@ -117,6 +127,7 @@ def chatter_limit(
     osc : the model. tau, v : states, v >= 0; they broadcast, and the fields have their shape.
     digits : decimal digits of tau, which is then an mpmath number.
     impacts : at most; the status is then `unresolved`. The limit bounds the time of a call.
+    wall : of the states of a model with two walls, as for the impact map; without digits.
 
     Notes
     -----
@@ -130,6 +141,11 @@ def chatter_limit(
     >>> print(f"{end.tau:.14f}", Status(end.status).name, bool(end.error < 1e-13))
     0.95935923442208 complete True
     """
+    if wall is not None:
+        fly = partial(chatter_limit, digits=digits, impacts=impacts)
+        return at_walls(fly, osc, wall, (tau, v))  # type: ignore[no-any-return]
+    if digits is not None and osc.upper is not None:
+        raise refuse("digits", digits, "None for a model with two walls, or osc.one_wall('lower')")
     states, most = (
         States.of(osc, tau, v, digits if isinstance(digits, int) else 15),
         whole("impacts", impacts, 1, 10**7),
@@ -176,6 +192,7 @@ def _in_doubles(osc: Oscillator, states: States, most: int) -> ChatterLimit:
     near = 0.0 if compare(osc.slope_at_rest(), 1) == 0 else ENDING.near
     compiled = model.limits(states.tau[at], states.v[at], (near, float(most), ENDING.trust)) if at.size else None
     tau, error, impacts = (np.full(count, np.nan) for _ in range(3))
+    above = np.zeros(count, np.int8)
     codes = np.full(count, NO_ROOM, np.int8)
     if compiled is not None:
         codes[at], (tau[at], error[at], impacts[at]) = compiled
@@ -190,12 +207,15 @@ def _in_doubles(osc: Oscillator, states: States, most: int) -> ChatterLimit:
     for flown in _abreast(osc, states, most, np.flatnonzero(codes == NO_ROOM).tolist()):
         index, one = flown.index, flown.ended()
         tau[index], error[index], impacts[index] = one.tau, one.error, one.impacts
-        status[index], cause[index] = one.status, one.cause
+        status[index], cause[index], above[index] = one.status, one.cause, flown.wall
+    walls = None if osc.upper is None else above
     if not states.shape:
-        return ChatterLimit(tau[0], int(impacts[0]), error[0], status[0], cause=cause[0])
+        last = None if walls is None else walls[0]
+        return ChatterLimit(tau[0], int(impacts[0]), error[0], status[0], cause=cause[0], wall=last)
     parts = tau, impacts.astype(np.int64), error, status_array(status), np.full(count, None), cause
     shaped = [column.reshape(states.shape) for column in parts]
-    return ChatterLimit(shaped[0], shaped[1], shaped[2], shaped[3], shaped[4], shaped[5])
+    walls = None if walls is None else walls.reshape(states.shape)
+    return ChatterLimit(shaped[0], shaped[1], shaped[2], shaped[3], shaped[4], shaped[5], wall=walls)
 
 
 def _enclosed(osc: Oscillator, states: States, digits: int) -> ChatterLimit | None:
@@ -245,12 +265,14 @@ def _last(terms: list[Any]) -> Any:
 
 def _abreast(osc: Oscillator, states: States, most: int, at: list[int]) -> Iterator[_Flown]:
     """The sequences of some of the states, in blocks in which a formula is evaluated for all states at once."""
-    begin, many, law = 0, 4, _Law(osc)
+    begin, many = 0, 4
+    laws = [_Law(each) for each in ((osc,) if osc.upper is None else (osc, osc.mirrored))]
     while begin < len(at):
-        block = [_Flown(law, states, most, index) for index in at[begin : begin + many]]
+        block = [_Flown(laws, states, most, index) for index in at[begin : begin + many]]
         going = block
         while going := [flown for flown in going if flown.is_going]:
-            _look_ahead(osc, going)
+            for wall, law in enumerate(laws):
+                _look_ahead(law.osc, [flown for flown in going if flown.wall == wall])
         _differentiate(osc, [flown for flown in block if flown.over and len(flown.matrices) < len(flown.times) - 1])
         yield from block
         begin += many
@@ -259,7 +281,9 @@ def _abreast(osc: Oscillator, states: States, most: int, at: list[int]) -> Itera
 
 
 def _look_ahead(osc: Oscillator, going: list[_Flown]) -> None:
-    """Estimate what is left of each sequence, which ends or is flown further."""
+    """Estimate what is left of each sequence at the lower wall, which ends or is flown further."""
+    if not going:
+        return
     tau, v = np.array([(flown.times[-1], flown.speeds[-1]) for flown in going]).T
     a = acceleration(osc, tau)
     left, error = np.full((2, tau.size), np.nan)
@@ -272,8 +296,10 @@ def _look_ahead(osc: Oscillator, going: list[_Flown]) -> None:
 
 def _differentiate(osc: Oscillator, flown: list[_Flown]) -> None:
     """D G of every impact of some sequences."""
-    launches = [pair for one in flown for pair in zip(one.times[:-1], one.speeds[:-1], strict=True)]
-    matrices = iter(derivative(osc, *np.array(launches).T).matrix.tolist() if launches else ())
+    launches = [launch for one in flown for launch in zip(one.times[:-1], one.speeds[:-1], one.walls[:-1], strict=True)]
+    tau, v, walls = np.array(launches).reshape(-1, 3).T
+    wall = None if osc.upper is None else walls.astype(np.int8)
+    matrices = iter(derivative(osc, tau, v, wall=wall).matrix.tolist() if launches else ())
     for one in flown:
         one.matrices = list(islice(matrices, len(one.times) - 1))
 
@@ -297,14 +323,30 @@ class _Law:
 class _Flown:
     """A chatter sequence in doubles, for any model; `kernels.chatter` is the compiled version for linear models."""
 
-    def __init__(self, law: _Law, states: States, most: int, index: int) -> None:
-        self.law, self.osc, self.given, self.most, self.index = law, law.osc, states.given(index), most, index
+    def __init__(self, laws: list[_Law], states: States, most: int, index: int) -> None:
+        self.laws, self.given, self.most, self.index = laws, states.given(index), most, index
+        self.walls = [0]
         self.turns = float(np.broadcast_to(states.turns, states.tau.shape)[index])
         self.times, self.speeds, self.cause = [float(states.tau[index])], [float(states.v[index])], Cause.decided
         self.short = False  # whether the rest is summed up from the last impact
         self.matrices: list[Any] = []
         self.over: tuple[float, float, Status] | None = None
         self.status, self.push = self._first(), np.nan
+
+    @property
+    def wall(self) -> int:
+        """The wall of the last impact."""
+        return self.walls[-1]
+
+    @property
+    def law(self) -> _Law:
+        """The restitution there."""
+        return self.laws[self.wall]
+
+    @property
+    def osc(self) -> Oscillator:
+        """The model whose lower wall it is."""
+        return self.law.osc
 
     @property
     def is_going(self) -> bool:
@@ -355,18 +397,21 @@ class _Flown:
         if step.status == Status.hit:
             self.times.append(float(step.tau) - self.turns)
             self.speeds.append(float(step.v))
+            self.walls.append(0 if step.wall is None else int(step.wall))
         self.cause = Cause(int(step.cause))
         return Status(int(step.status))
 
     def _fly(self, count: int, near: float) -> Status:
         """Fly further impacts; the sequence is cut after the first impact with a_c >= 0."""
         segment = orbit_segment(self.osc, self.times[-1], self.speeds[-1], min(count, 4096, self._left()), near)
-        length = self._kept(segment)
-        self.times += segment.tau[:length].tolist()
-        self.speeds += segment.v[:length].tolist()
+        length, wall = self._kept(segment), self.wall
         if self.law.has_slopes:
             r, slopes = self.law.r, segment.slopes.T[:length].tolist()
-            self.matrices += [((1 + a, b), (-r * c, -r * d)) for a, b, c, d in slopes]
+            if len(self.laws) == 1:
+                self.matrices += [((1 + a, b), (-r * c, -r * d)) for a, b, c, d in slopes]
+        self.times += segment.tau[:length].tolist()
+        self.speeds += segment.v[:length].tolist()
+        self.walls += (segment.wall[:length] ^ np.int8(wall)).tolist()
         if length != segment.tau.size:
             return Status.hit
         if segment.status and len(self.times) > 1 and acceleration(self.osc, np.array(self.times[-1:]))[0] >= 0:

@@ -24,7 +24,8 @@ from singimpact.flights.impact_map import impact_map
 from singimpact.flights.orbits import Ends, Segment, iterates, orbit_segment
 from singimpact.flights.rebound_law import rebound_slope
 from singimpact.flights.states import States
-from singimpact.inputs import InputError, checked_keywords, refuse, shown, whole
+from singimpact.flights.walls import wall_codes
+from singimpact.inputs import InputError, checked_keywords, refuse, shown, takes_two_walls, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.result import Result
 from singimpact.status import Status
@@ -111,14 +112,17 @@ class Lyapunov(Result):
 
 
 @checked_keywords
-def lyapunov(osc: Oscillator, tau: Any, v: Any, impacts: int = 10_000, *, transient: int | None = None) -> Lyapunov:
+@takes_two_walls
+def lyapunov(
+    osc: Oscillator, tau: Any, v: Any, impacts: int = 10_000, *, transient: int | None = None, wall: Any = None
+) -> Lyapunov:
     """The Lyapunov exponents of the orbit of a state.
 
     Parameters
     ----------
     osc : the model. tau, v : the state, v >= 0. impacts : flown, with D G, after `transient` others. Without a
         transient the orbit is followed until it repeats, at most 20 000 impacts, then flown anew while both halves
-        differ.
+        differ. wall : of the state, of a model with two walls: "lower" (also without it) or "upper".
 
     Returns
     -------
@@ -142,7 +146,10 @@ def lyapunov(osc: Oscillator, tau: Any, v: Any, impacts: int = 10_000, *, transi
     if states.shape:
         raise InputError(f"tau and v have shape {states.shape}: an orbit starts from one state, give two numbers")
     flown = whole("impacts", impacts, 1, 10**8)
-    run = _Run(osc, states)
+    codes = wall_codes(osc, wall)
+    if codes.shape:
+        raise refuse("wall", wall, "one wall: an orbit starts from one state")
+    run = _Run(osc, states, int(codes))
     if transient is None:
         return run.settled(flown)
     run.fly(whole("transient", transient, 0, 10**8), keep=False)
@@ -186,18 +193,25 @@ class _Sums:
 class _Run:
     """An orbit that is being flown, and the growth along it."""
 
-    def __init__(self, osc: Oscillator, states: States) -> None:
-        self.osc, self.given = osc, states.given(0)
+    def __init__(self, osc: Oscillator, states: States, wall: int) -> None:
+        self.osc, self.given, self.wall = osc, states.given(0), wall
+        self.models = (osc,) if osc.upper is None else (osc, osc.mirrored)
         self.tau, self.v = float(states.tau[0]), float(states.v[0])
         self.before = 0  # impacts of the transient
-        self.first, self.lifted, self.status = True, list[float](), Status.hit
-        self.near = 0.0 if compare(osc.slope_at_rest(), 1) == 0 else ENDING.near
-        if not self.near and chatter_completes(osc):
+        self.first, self.lifted, self.status = True, list[tuple[float, int]](), Status.hit
+        # one r = 1 is enough: such a wall has no chatter that ends
+        self.near = 0.0 if any(compare(each.slope_at_rest(), 1) == 0 for each in self.models) else ENDING.near
+        if not self.near and any(chatter_completes(each) for each in self.models):
             raise InputError(
                 f"restitution = {shown(str(osc.restitution))} is not accepted: exponents need r < 1, or r = 1 without "
                 "the power q < 1 of the speed by which chatter comes to rest"
             )
         self.begin()
+
+    @property
+    def here(self) -> Oscillator:
+        """The model whose lower wall is the wall of the state."""
+        return self.models[self.wall]
 
     def begin(self, direction: Array | None = None) -> None:
         """Sums from the present state on."""
@@ -232,10 +246,11 @@ class _Run:
         if plastic:
             ahead = iterates(self.osc, self.tau, self.v, SETTINGS.period, True)
         else:
-            ahead = orbit_segment(self.osc, self.tau, self.v, SETTINGS.period)
+            ahead = orbit_segment(self.osc, self.tau, self.v, SETTINGS.period, wall=self.wall)
         last = slice(-SETTINGS.period, None)
         away = apart((ahead.tau[last], ahead.v[last]), (self.tau, self.v), phases_of(self.osc), self.v or 1.0)
-        return bool((away < SETTINGS.close).any())
+        same = True if ahead.wall is None else ahead.wall[last] == self.wall
+        return bool(((away < SETTINGS.close) & same).any())
 
     def fly(self, most: int, keep: bool) -> None:
         """So many impacts, fewer where the orbit ends or is seen to come to rest again and again."""
@@ -247,13 +262,13 @@ class _Run:
             if not self.v > 0:
                 done += self._mapped(keep)
                 continue
-            segment = orbit_segment(self.osc, self.tau, self.v, min(most - done, block), near)
+            segment = orbit_segment(self.osc, self.tau, self.v, min(most - done, block), near, self.wall)
             done += self._flew(segment, keep)
             near, block = self.near, SETTINGS.block
             if done == most:
                 return
             if segment.short:
-                end = chatter_limit(self.osc, self.tau, self.v)
+                end = chatter_limit(self.here, self.tau, self.v)
                 if end.status == Status.complete:
                     self._rest(float(end.tau))
                 else:  # contact is lost before the impacts accumulate: they are flown
@@ -266,11 +281,13 @@ class _Run:
         if not count:
             return 0
         launches = np.append(self.tau, segment.tau[:-1]), np.append(self.v, segment.v[:-1])
+        walls = np.append(np.int8(self.wall), segment.wall[:-1])
         self.tau, self.v, self.first = float(segment.tau[-1]), float(segment.v[-1]), False
+        self.wall = int(segment.wall[-1])
         if not keep:
             return count
-        shrunk = log_determinant(self.osc, *launches, segment.flight_time, segment.velocity)
-        self.sums.add(_matrices(self.osc, segment, *launches), segment.flight_time, shrunk)
+        shrunk = log_determinant(self.osc, *launches, segment.flight_time, segment.velocity, walls)
+        self.sums.add(_matrices(self.osc, segment, *launches, walls), segment.flight_time, shrunk)
         self.flown += count
         return count
 
@@ -297,7 +314,8 @@ class _Run:
     def _mapped(self, keep: bool) -> int:
         """One flight by the impact map, which decides what an orbit leaves open: a rest, a flight near a graze."""
         launch_state = self.given if self.first else (self.tau, self.v)
-        step = impact_map(self.osc, *launch_state)
+        here = self.here
+        step = impact_map(here, *launch_state)
         self.first = False
         if step.status == Status.sticks:
             self._rest(self.tau)
@@ -307,23 +325,25 @@ class _Run:
             return 1
         rest, before = self.v == 0, (self.tau, self.v)
         self.tau, self.v = float(step.tau), float(step.v)
+        self.wall ^= 0 if step.wall is None else int(step.wall)
         if rest:  # the impact after a lift-off does not depend on the orbit before: the sums begin there
             self.begin()
         elif keep:
             launch = np.array([before[0]]), np.array([before[1]])
             flight = np.array([float(step.flight_time)]), np.array([float(step.velocity)])
-            shrunk = log_determinant(self.osc, *launch, *flight)
-            self.sums.add(derivative(self.osc, *before).matrix[None], flight[0], shrunk)
+            shrunk = log_determinant(here, *launch, *flight)
+            self.sums.add(derivative(here, *before).matrix[None], flight[0], shrunk)
             self.flown += 1
         return 1
 
     def _rest(self, at: float) -> None:
-        lifted = release(self.osc, at)
+        lifted = release(self.here, at)
         # what follows a lift-off is fixed: one at a phase of an earlier one comes again and again
-        known = any(periods_between(self.osc, each, lifted) is not None for each in self.lifted)
+        earlier = [each for each, wall in self.lifted if wall == self.wall]
+        known = any(periods_between(self.osc, each, lifted) is not None for each in earlier)
         if known or not np.isfinite(lifted):
             self.status = Status.unresolved if np.isnan(lifted) else Status.sticks
-        self.lifted.append(lifted)
+        self.lifted.append((lifted, self.wall))
         self.tau, self.v = (lifted if np.isfinite(lifted) else at), 0.0
         self.first = False
 
@@ -366,10 +386,10 @@ def _halves_agree(rows: Array) -> bool:
     return bool(abs(one[0] - other[0]) <= allowed)
 
 
-def _matrices(osc: Oscillator, found: Segment, tau: Array, v: Array) -> Array:
+def _matrices(osc: Oscillator, found: Segment, tau: Array, v: Array, wall: Array) -> Array:
     """D G of the impacts of a segment, shape (n, 2, 2)."""
     if not compiled_model(osc).linear:
-        return np.asarray(derivative(osc, tau, v).matrix)
+        return np.asarray(derivative(osc, tau, v, wall=None if osc.upper is None else wall).matrix)
     slope = rebound_slope(osc, found.velocity)
     by_tau, by_v, speed_by_tau, speed_by_v = found.slopes
     return np.stack([1 + by_tau, by_v, slope * speed_by_tau, slope * speed_by_v], axis=-1).reshape(-1, 2, 2)

@@ -23,10 +23,11 @@ from singimpact.flights.off_wall import Launched, launch
 from singimpact.flights.orbits import orbit_segment
 from singimpact.flights.results import Step
 from singimpact.flights.states import States
+from singimpact.flights.walls import wall_codes
 from singimpact.inputs import InputError, refuse, shown, whole
 from singimpact.oscillator.model import Oscillator
-from singimpact.result import Result
-from singimpact.status import Status
+from singimpact.result import Result, plain
+from singimpact.status import Status, Wall
 
 
 @dataclass(frozen=True)
@@ -61,6 +62,7 @@ class Orbit(Result):
     end : the time up to which x(t) is known: of the last event; the horizon of a flight that does not return, or inf
         where it is proved never to; inf for a rest for ever.
     height : x - c at the start; 0 but for an orbit that starts off the wall, whose first v is x' there.
+    wall : int8, of every event, of a model with two walls, 1 at the upper one; None of a model with one.
     """
 
     oscillator: Oscillator
@@ -70,6 +72,7 @@ class Orbit(Result):
     phases: list[tuple[str, float, float]]
     end: float
     height: float = 0.0
+    wall: np.ndarray[Any, Any] | None = None
 
     def sample(self, t: Any) -> Path:
         """x and x' at times, through flights, chatter and rest.
@@ -100,10 +103,32 @@ class Orbit(Result):
             words = f"t = {shown(t)}: the orbit is known from {self.tau[0]:.6g} to {self.end:.6g}; x and xdot are nan"
             warnings.warn(words, stacklevel=3)
         order = np.argsort(flat, kind="stable")
-        out = np.full((flat.size, 2), np.nan)
-        events = self.tau, self.v, self.kind
-        out[order] = sampled(self.oscillator, events, self._last_kind, self.end, self.height, flat[order])
+        out, events = np.full((flat.size, 2), np.nan), (self.tau, self.v, self.kind)
+        how = self._last_kind, self.end, self.height
+        place = self.oscillator.upper
+        if self.wall is None or place is None:
+            out[order] = sampled(self.oscillator, events, *how, flat[order])
+        else:
+            walls = self.wall[np.maximum(np.searchsorted(self.tau, flat[order], side="right") - 1, 0)]
+            lower, upper = order[walls == Wall.lower], order[walls == Wall.upper]
+            out[lower] = sampled(self.oscillator, events, *how, flat[lower])
+            out[upper] = -sampled(self.oscillator.mirrored, events, *how[:2], 0.0, flat[upper])
+            # rounding next to an impact would place the mass behind the other wall
+            out[:, 0] = np.clip(out[:, 0], as_float(self.oscillator.clearance), as_float(place))
         return Path(out[:, 0].reshape(times.shape)[()], out[:, 1].reshape(times.shape)[()])
+
+    @property
+    def speeds(self) -> Array:
+        """x' just after each event: v, and -v at an upper wall."""
+        return self.v if self.wall is None else np.where(self.wall == Wall.upper, -self.v, self.v)
+
+    @property
+    def places(self) -> Array:
+        """x of the wall of each event."""
+        low, high = self.oscillator.clearance, self.oscillator.upper
+        if high is None or self.wall is None:
+            return np.full(self.tau.size, as_float(low))
+        return np.where(self.wall == Wall.upper, as_float(high), as_float(low))
 
     def section(self, phase: Any = 0) -> Section:
         """The states once a period of the forcing, from the start to the last event.
@@ -137,7 +162,8 @@ class Orbit(Result):
     def as_dict(self) -> dict[str, Any]:
         """tau, v and kind of every event, and the phases between them."""
         phases = [{"kind": kind, "start": float(start), "end": float(end)} for kind, start, end in self.phases]
-        return {"tau": self.tau, "v": self.v, "kind": self.kind.astype(object), "phases": phases}
+        walls = {} if self.wall is None else {"wall": plain(self.wall, "wall")}
+        return {"tau": self.tau, "v": self.v, **walls, "kind": self.kind.astype(object), "phases": phases}
 
     def _later(self, time: float) -> Orbit:
         """The orbit with all times moved on by whole periods."""
@@ -161,11 +187,12 @@ class Orbit(Result):
         names = {"impact": "impacts", "graze": "grazes", "complete": "chatters that end", "release": "lift-offs"}
         counts = {word: int(np.count_nonzero(self.kind == name)) for name, word in names.items()}
         told = ", ".join(f"{count} {word}" for word, count in counts.items() if count or word == "impacts")
-        last = f"tau = {self.tau[-1]:.17g}, v = {self.v[-1]:.17g}; {self._ending}"
+        at = "" if self.wall is None else f"wall = {Wall(int(self.wall[-1])).name}, "
+        last = f"{at}tau = {self.tau[-1]:.17g}, v = {self.v[-1]:.17g}; {self._ending}"
         return f"Orbit from tau = {self.tau[0]:.9g} to {self.tau[-1]:.9g}: {told}\n  last state {last}"
 
 
-def orbit(osc: Oscillator, tau: Any, v: Any, impacts: int = 200, *, horizon: Any = None) -> Orbit:
+def orbit(osc: Oscillator, tau: Any, v: Any, impacts: int = 200, *, horizon: Any = None, wall: Any = None) -> Orbit:
     """The orbit of a state through at most `impacts` flights.
 
     Parameters
@@ -173,11 +200,12 @@ def orbit(osc: Oscillator, tau: Any, v: Any, impacts: int = 200, *, horizon: Any
     osc : the model. tau, v : the state, v >= 0.
     impacts : how many flights are flown; a chatter that is summed up counts as one.
     horizon : flight time at which a flight is given up; None for the package default.
+    wall : of the state, of a model with two walls: "lower" (also without it) or "upper".
 
     Notes
     -----
-    What follows a lift-off is fixed by its phase. When the mass lifts off at a phase again, the events since the first
-    time are repeated, shifted by whole periods; they are not flown again.
+    What follows a lift-off is fixed by its phase. When the mass lifts off a wall at a phase again, the events since the
+    first time are repeated, shifted by whole periods; they are not flown again.
 
     Returns
     -------
@@ -195,8 +223,11 @@ def orbit(osc: Oscillator, tau: Any, v: Any, impacts: int = 200, *, horizon: Any
     most = whole("impacts", impacts, 0, 10**7)
     if states.v[0] > 0:
         states = states.in_period(osc)
+    codes = wall_codes(osc, wall)
+    if codes.shape:
+        raise refuse("wall", wall, "one wall: an orbit starts from one state")
     start = float(states.tau[0]), float(states.v[0])
-    run = _Run(osc, start, horizon, most)
+    run = _Run(osc, start, horizon, most, int(codes))
     if isinstance(states.turns, float):
         run.given = states.given(0)
         return run.orbit()
@@ -227,8 +258,10 @@ def dropped_orbit(osc: Oscillator, start: tuple[Any, Any, Any], impacts: int = 2
 class _Run:
     """An orbit that is being flown: its events in blocks, its phases."""
 
-    def __init__(self, osc: Oscillator, start: tuple[float, float], horizon: Any, most: int) -> None:
+    def __init__(self, osc: Oscillator, start: tuple[float, float], horizon: Any, most: int, wall: int = 0) -> None:
         self.osc, self.horizon, self.most = osc, horizon, most
+        self.models = (osc,) if osc.upper is None else (osc, osc.mirrored)
+        self.wall = wall
         # the first state as it was written
         self.given: tuple[Any, Any] = start
         self.tau, self.v = start
@@ -237,11 +270,17 @@ class _Run:
         self.known = self.tau
         self.times, self.velocities = [np.array([self.tau])], [np.array([self.v])]
         self.kinds: list[Array] = [np.array(["start"], dtype="U8")]
+        self.walls: list[Array] = [np.array([wall], np.int8)]
         self.phases: list[tuple[str, float, float]] = []
         # whether the chatter left is short, and how many impacts are flown before it can be summed up
         self.short, self.more = False, 0
-        # time of every lift-off, and how many blocks of events there were
-        self.lifted: list[tuple[float, int]] = []
+        # time and wall of every lift-off, and how many blocks of events there were
+        self.lifted: list[tuple[float, int, int]] = []
+
+    @property
+    def here(self) -> Oscillator:
+        """The model whose lower wall is the wall of the state."""
+        return self.models[self.wall]
 
     def orbit(self) -> Orbit:
         """All flights that are left, and what came of them."""
@@ -249,7 +288,8 @@ class _Run:
             self.advance()
         times, velocities = np.concatenate(self.times), np.concatenate(self.velocities)
         known = max(self.known, float(times[-1]))
-        return Orbit(self.osc, times, velocities, np.concatenate(self.kinds), self.phases, known)
+        walls = None if self.osc.upper is None else np.concatenate(self.walls)
+        return Orbit(self.osc, times, velocities, np.concatenate(self.kinds), self.phases, known, wall=walls)
 
     def advance(self) -> None:
         """At least one flight, or the end of a chatter."""
@@ -258,23 +298,26 @@ class _Run:
                 return
             left = self.most - self.flown
             if self.short:
-                segment = orbit_segment(self.osc, self.tau, self.v, min(left, self.more))
+                segment = orbit_segment(self.osc, self.tau, self.v, min(left, self.more), wall=self.wall)
             else:
-                segment = orbit_segment(self.osc, self.tau, self.v, min(left, SETTINGS.block), ENDING.near)
-            self._impacts(segment.tau, segment.v)
+                segment = orbit_segment(self.osc, self.tau, self.v, min(left, SETTINGS.block), ENDING.near, self.wall)
+            self._impacts(segment.tau, segment.v, segment.wall)
             self.short = not segment.status and (self.short or segment.short)
             if not segment.status or self.flown == self.most:
                 return
         self._mapped()
 
-    def _impacts(self, times: Array, velocities: Array) -> None:
+    def _impacts(self, times: Array, velocities: Array, walls: Array) -> None:
         starts = [self.tau, *times.tolist()]
         self.phases += [("flight", begin, end) for begin, end in pairwise(starts)]
         if times.size:
-            self._event(times, velocities, "impact")
+            self._event(times, velocities, "impact", walls)
             self.flown += times.size
 
-    def _event(self, times: Array, velocities: Array, kind: str) -> None:
+    def _event(self, times: Array, velocities: Array, kind: str, walls: Array | None = None) -> None:
+        """Events of a kind; without `walls` at the present one."""
+        self.walls.append(np.full(times.size, self.wall, np.int8) if walls is None else walls)
+        self.wall = int(self.walls[-1][-1])
         self.times.append(times)
         self.velocities.append(velocities)
         self.kinds.append(np.full(times.size, kind, dtype="U8"))
@@ -290,14 +333,14 @@ class _Run:
 
     def _summed(self) -> bool:
         """Whether the chatter left is summed up, which counts as one flight."""
-        left = chatter_left(self.osc, self.tau, self.v)
+        left = chatter_left(self.here, self.tau, self.v)
         if left is None:  # a_c presses no more
             self.short = False
             return False
         time, error = left
         resolution = EPSILON * max(abs(self.tau), self.tau - self.begun)
         if not error <= resolution:
-            self.more = impacts_until(self.osc, error, resolution)
+            self.more = impacts_until(self.here, error, resolution)
             return False
         self._go("chatter", self.tau + time, 0.0, "complete")
         self.flown, self.short = self.flown + 1, False
@@ -307,13 +350,15 @@ class _Run:
     def _mapped(self) -> None:
         """One flight by the impact map, which says what became of it."""
         if self.v == 0 and len(self.times) > 1 and self.horizon is None:
-            self.ended(_after_rest(self.osc, self.tau))
+            self.ended(_after_rest(self.here, self.tau), self.wall)
         else:
             given = self.given if len(self.times) == 1 else (self.tau, self.v)
-            self.ended(impact_map(self.osc, *given, horizon=self.horizon))
+            self.ended(impact_map(self.here, *given, horizon=self.horizon), self.wall)
 
-    def ended(self, step: Step | Launched) -> None:
-        """The end of one flight."""
+    def ended(self, step: Step | Launched, wall: int = 0) -> None:
+        """The end of one flight of the model whose lower wall is `wall`."""
+        if step.wall is not None and step.status in (Status.hit, Status.graze):
+            self.wall = int(step.wall) ^ wall
         self.flown, self.short = self.flown + 1, False
         match step.status:
             case Status.hit | Status.graze:
@@ -331,27 +376,27 @@ class _Run:
                 self._end("unresolved", np.nan)
 
     def _rest(self) -> None:
-        lifted = release(self.osc, self.tau)
+        lifted = release(self.here, self.tau)
         if not np.isfinite(lifted):
             self._end("sticking" if np.isinf(lifted) else "unresolved", lifted)
             if np.isinf(lifted):
                 self.known = np.inf if self.osc.period is not None else self.tau + LIMITS.horizon_time
             return
         self._go("sticking", lifted, 0.0, "release")
-        for earlier, block in self.lifted:
+        for earlier, wall, block in self.lifted:
             time = periods_between(self.osc, earlier, lifted)
-            if time is not None:
+            if time is not None and wall == self.wall:
                 self._repeat(block, time)
                 return
-        self.lifted.append((lifted, len(self.times)))
+        self.lifted.append((lifted, self.wall, len(self.times)))
 
     def _repeat(self, block: int, time: float) -> None:
         """The events since a lift-off at this phase, again and again, until all flights asked for are there."""
         left = self.most - self.flown
         if not left:  # the chatter before this lift-off was the last flight asked for
             return
-        times, velocities, kinds = (
-            np.concatenate(blocks[block:]) for blocks in (self.times, self.velocities, self.kinds)
+        times, velocities, kinds, walls = (
+            np.concatenate(blocks[block:]) for blocks in (self.times, self.velocities, self.kinds, self.walls)
         )
         flights = np.count_nonzero(kinds != "release")
         again = -(-left // flights)
@@ -364,6 +409,7 @@ class _Run:
         self.times.append(ends)
         self.velocities.append(np.tile(velocities, again)[:count])
         self.kinds.append(np.tile(kinds, again)[:count])
+        self.walls.append(np.tile(walls, again)[:count])
         self.flown = self.most
 
 

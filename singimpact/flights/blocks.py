@@ -16,7 +16,7 @@ from singimpact.status import status_array
 
 SPARSE = ("depth", "bound")
 """Numbers that few flights have."""
-ALWAYS = ("status", "cause")
+ALWAYS = ("status", "cause", "wall")
 """Fields that are filled for any arrays of the caller."""
 
 

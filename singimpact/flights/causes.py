@@ -8,6 +8,7 @@ import numpy as np
 from singimpact.algebra.expressions import Call, Expression, Number, Power, evaluate, substitute
 from singimpact.algebra.numbers import Array, as_float
 from singimpact.algebra.rings import DOUBLES
+from singimpact.flights.kernels.state import ACROSS
 from singimpact.flights.model_numbers import recurrence_of
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Cause, Status
@@ -17,13 +18,14 @@ ENDED = {5: Cause.near_graze, 21: Cause.step_budget, 22: Cause.domain_left, 23: 
 
 
 def decoded(codes: Array) -> tuple[Array, Array]:
-    """Statuses and causes of the codes that a kernel returns.
+    """Statuses and causes of the codes that a kernel returns, at either wall.
 
     Examples
     --------
     >>> [part.tolist() for part in decoded(np.array([0, 3, 5, 22]))]
     [[0, 3, 5, 5], [0, 0, 1, 3]]
     """
+    codes = np.where(codes >= ACROSS, codes - ACROSS, codes)
     status, cause = codes.astype(np.int8), np.zeros(codes.shape, dtype=np.int8)
     for code, name in ENDED.items():
         cause[codes == code] = name

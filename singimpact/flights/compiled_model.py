@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import lru_cache, partial
 from time import perf_counter
 from typing import Any
@@ -17,14 +17,14 @@ from singimpact.codegen.scalar import scalar
 from singimpact.codegen.taylor_recurrence import Recurrence
 from singimpact.flights import flight_count
 from singimpact.flights.bind import LAW, Emitted
-from singimpact.flights.flat_numbers import TABLES, laid_out
+from singimpact.flights.flat_numbers import TABLES, walls_laid_out
 from singimpact.flights.horizons import Allowance, horizon_of, reach_of, steps_of
 from singimpact.flights.interpreted import LEFT_OPEN, Interpreter
 from singimpact.flights.interruptible import LONG, interruptible, shared_out, threads_now
 from singimpact.flights.kernels import entries, layout
 from singimpact.flights.kernels.chatter import NO_ROOM
-from singimpact.flights.kernels.hits import AT_REST
-from singimpact.flights.kernels.state import LANES
+from singimpact.flights.kernels.hits import AT_REST, NOT_REFINED
+from singimpact.flights.kernels.state import ACROSS, LANES, VELOCITY, VELOCITY_BY_TAU, VELOCITY_BY_V
 from singimpact.flights.limits import LIMITS
 from singimpact.flights.machine import FEW, Bound, Called, Machine, compilable, machine_of, one_by_one
 from singimpact.flights.model_numbers import (
@@ -61,6 +61,14 @@ def allowed(osc: Oscillator, allowance: Allowance) -> CompiledModel:
     return CompiledModel(osc, allowance)
 
 
+def _law_of(osc: Oscillator) -> tuple[str, Array]:
+    """The text of a law rho, empty for a constant; its constants, and 0 for a constant, or the address of the law."""
+    text, trees = scalar(rho_of(osc.restitution), ("v",), LAW)
+    if not names_in(osc.restitution):
+        text, trees = "", (osc.restitution,)
+    return text, np.array([*(as_float(substitute(tree, osc.parameters)) for tree in trees), float(bool(text))])
+
+
 class CompiledModel:
     """A model's numbers, tables and scratch in flat arrays, and the compiled entries that work on them.
 
@@ -72,22 +80,29 @@ class CompiledModel:
         self.osc, self.allowance = osc, allowance
         self.form = linear_form(osc)
         self.linear = flow is None and has_table(osc)
-        text, trees = scalar(rho_of(osc.restitution), ("v",), LAW)
-        self.constant_restitution = not names_in(osc.restitution)
-        if self.constant_restitution:
-            text, trees = "", (osc.restitution,)
-        # last, 0 for a constant, or the address of the compiled law
-        self.rho = np.array([*(as_float(substitute(tree, osc.parameters)) for tree in trees), float(bool(text))])
+        self.walls = (osc,) if osc.upper is None else (osc, osc.mirrored)
+        self.constant_restitution = not any(names_in(each.restitution) for each in self.walls)
         self.flow = None if self.linear else flow or recurrence_of(osc)
-        self.emitted = Emitted("" if self.flow is None else self.flow.source, text)
+        flows = [self.flow, *(None if self.linear else recurrence_of(each) for each in self.walls[1:])]
+        texts, laws = zip(*(_law_of(each) for each in self.walls), strict=True)
+        self.sizes, self.flat, self.rho = walls_laid_out(osc, allowance, flows, laws)
+        flats, rhos = np.split(self.flat, len(self.walls)), np.split(self.rho, len(self.walls))
+        self.emitted = [Emitted(each.source if each else "", text) for each, text in zip(flows, texts, strict=True)]
         self.machine: Machine = machine_of(Emitted(steps=not self.linear))
         self.main = self.machine.emitted.entries[0]
-        self.sizes, self.flat = laid_out(osc, allowance, self.flow, self.rho)
-        self.recurrence = Called(machine_of(Emitted(self.emitted.flow)), self.flat) if self.flow else None
-        self.law = Called(machine_of(Emitted(rho=text)), self.rho) if text else None
+        self.recurrences = [
+            Called(machine_of(Emitted(each.flow)), numbers)
+            for each, numbers in zip(self.emitted, flats, strict=True)
+            if each.flow
+        ]
+        self.laws = [
+            Called(machine_of(Emitted(rho=text)), numbers) for text, numbers in zip(texts, rhos, strict=True) if text
+        ]
         self._sizes, self._flat_address = self.sizes.tolist(), _address(self.flat)
         self._room = layout.scratch_length(self.sizes)
-        self.r = float(self.rho[0]) if self.constant_restitution else np.nan
+        # r of the lower wall and of the upper one
+        self.rates = tuple(float(numbers[0]) if self.constant_restitution else np.nan for numbers in rhos)
+        self.r = self.rates[0]
         self.price = LIMITS.interpreted_linear if self.linear else LIMITS.interpreted_taylor
         # launch times beyond are reduced by exact arithmetic first
         self.nearest = late(osc)
@@ -108,17 +123,14 @@ class CompiledModel:
         found = self.machine.entry(name)
         return None if found is None else self._ready(name, found[0])
 
-    def _here(self, name: str, law: Called | None = None) -> Callable[..., int]:
+    def _here(self, name: str, laws: Sequence[Called] = ()) -> Callable[..., int]:
         """An entry compiled now, and what it calls, for what Python's numbers refuse or what takes too long."""
         if not compilable():
             raise InputError("the flight leaves the range of Python's numbers: install numba, which compiles flights")
         entry = self.machine.compile_here(name)[0]
-        for each in self._called(law):
-            each.compile_here()
+        for text in (*self.recurrences, *laws):
+            text.compile_here()
         return self._ready(name, entry)
-
-    def _called(self, law: Called | None) -> list[Called]:
-        return [each for each in (self.recurrence, law) if each is not None]
 
     def _ready(self, name: str, entry: Callable[..., int]) -> Callable[..., int]:
         kind = PREPARATIONS.get(name)
@@ -174,18 +186,18 @@ class CompiledModel:
         least = 0.9 * self._seconds[kind] if kind in self._seconds else self._least
         self._seconds[kind] = max((perf_counter() - begun) / units, least)
 
-    def _compiled(self, name: str, seconds: float, law: Called | None = None) -> Callable[..., int] | None:
+    def _compiled(self, name: str, seconds: float, laws: Sequence[Called] = ()) -> Callable[..., int] | None:
         """An entry for work that takes so long when it is interpreted; None: interpret it.
 
         Parameters
         ----------
-        law : what the work calls beside.
+        laws : what the work calls beside.
         """
         entry = self._entry(name)
         if entry is None:
             self.machine.interpreted(seconds, name)
             entry = self._entry(name)
-        missing = [text for text in self._called(law) if not text.is_bound(seconds)]
+        missing = [text for text in (*self.recurrences, *laws) if not text.is_bound(seconds)]
         return None if missing else entry
 
     def _unless_done(self, name: str, seconds: float, work: Callable[[], None]) -> Callable[..., int] | None:
@@ -216,13 +228,15 @@ class CompiledModel:
         from singimpact.flights.no_return.averaged import bounds_of
         from singimpact.flights.no_return.barrier import fastest_kept
 
-        return not self.linear and (bounds_of(self.osc) is not None or fastest_kept(self.osc) > 0)
+        # of a mass between two walls the other wall may stop it
+        one_wall = not self.linear and len(self.walls) == 1
+        return one_wall and (bounds_of(self.osc) is not None or fastest_kept(self.osc) > 0)
 
     @property
     def interpreter(self) -> Interpreter:
         """The model over lists of floats."""
         if self._interpreter is None:
-            self._interpreter = Interpreter(self.emitted, self.flat, self.sizes)
+            self._interpreter = Interpreter(self.emitted, np.split(self.flat, len(self.walls)), self.sizes)
         return self._interpreter
 
     def forget_lists(self) -> None:
@@ -283,7 +297,7 @@ class CompiledModel:
                 fly = partial(self._compiled_hits, (entry, kind), states, (out, status), least)
                 shared_out(fly, begin, end, TABLES.shared)
             begin = end
-        return status, out
+        return self._at_walls(status, out)
 
     def _hits_of_few(self, kind: int, tau: Array, v: Array, quantities: Array | None) -> tuple[Array, Array] | None:
         """`_searched` of few states; None for long flights, which hear an interruption, and until they are compiled."""
@@ -291,11 +305,21 @@ class CompiledModel:
         bound = None if is_long else self._bound.pop(kind, None) or self._for_few(kind)
         if bound is None:
             return None
-        results = bound.few(tau, v, np.nan if quantities is None else quantities)
+        codes, rows = bound.few(tau, v, np.nan if quantities is None else quantities)
         self._bound[kind] = bound
         self._measure(kind, tau.size, begun)
-        results[1][4 if not self.linear else 10 :] = np.nan
-        return results
+        rows[4 if not self.linear else 10 :] = np.nan
+        return self._at_walls(codes, rows)
+
+    def _at_walls(self, codes: Array, rows: Array) -> tuple[Array, Array]:
+        """Codes and columns of hits; those of the other wall count as hits, with x' > 0."""
+        if len(self.walls) == 2:
+            across = (codes == ACROSS) | (codes == ACROSS + NOT_REFINED)
+            codes -= across * np.int8(ACROSS)
+            side = np.where(across, -1.0, 1.0)
+            for column in (VELOCITY, VELOCITY_BY_TAU, VELOCITY_BY_V):
+                rows[column] *= side
+        return codes, rows
 
     def _compiled_hits(
         self, work: Work, states: tuple[Array, ...], results: tuple[Array, Array], least: int, chosen: slice
@@ -336,11 +360,15 @@ class CompiledModel:
         """
         bound = self._bound.pop(kind, None) or self._for_few(kind)
         if bound is not None:
-            results = bound.one(tau, v, *quantities)
+            code, columns = bound.one(tau, v, *quantities)
             self._bound[kind] = bound
             if kind in SEARCHES:
                 flight_count.add(1)
-            return results
+            if code >= ACROSS and code - ACROSS in (0, NOT_REFINED):
+                for column in (VELOCITY, VELOCITY_BY_TAU, VELOCITY_BY_V):
+                    columns[column] = -columns[column]
+                code -= ACROSS
+            return code, columns
         work: Any = {entries.HITS: self.hits, entries.DROPS: self.drops}
         outcome = work.get(kind, self.variations)(*(np.array([number]) for number in (tau, v, *quantities)))
         codes, rows = outcome if kind in SEARCHES else (np.zeros(1, np.int8), outcome)
@@ -350,7 +378,7 @@ class CompiledModel:
         """A compiled entry over memory of its own."""
         name = self._named(kind)
         entry = self.machine.entry(name)
-        if entry is None or (self.recurrence and not self.recurrence.is_bound()):
+        if entry is None or not all(text.is_bound() for text in self.recurrences):
             return None
         self._ready(name, entry[0])
         return Bound(entry[1], kind, (self.sizes, self.flat, self._new_scratch()))
@@ -360,40 +388,52 @@ class CompiledModel:
         flight_count.add(tau.size)
         status, out, orders = np.empty(tau.size, np.int8), np.full((10, tau.size), np.nan), removed.astype(float)
         self._work(entries.RELEASES, (tau, tau, orders), out, status)
-        return status, out
+        return self._at_walls(status, out)
 
     def segment(self, tau: float, v: float, count: int, near: float = 0.0) -> tuple[Array, int]:
-        """Rows of the impacts of one orbit, see `kernels.orbits`, and the code of the flight that ended it."""
-        out, status = np.empty((count, 11)), np.zeros(1, np.int8)
-        entry = self._compiled(self.main, self.price * count, self.law)
+        """Rows of the impacts of one orbit, see `kernels.orbits`, and the code of the flight that ended it.
+
+        Of impacts at the other wall x' > 0.
+        """
+        out, status = np.empty((count, 12)), np.zeros(1, np.int8)
+        entry = self._compiled(self.main, self.price * count, self.laws)
         if entry is None:
             try:
                 flown, code = self.interpreter.segment(tau, v, near, self.rho, out)
                 flight_count.add(flown)
-                return out[:flown], code
+                return self._rows_at_walls(out[:flown]), code
             except LEFT_OPEN:
-                entry = self._here(self.main, self.law)
+                entry = self._here(self.main, self.laws)
         states = np.array([tau]), np.array([v]), np.concatenate([[near], self.rho])
         flown = self._call(entry, (entries.SEGMENT, count, 0), states, out, status)
         flight_count.add(flown)
-        return out[:flown], int(status[0])
+        return self._rows_at_walls(out[:flown]), int(status[0])
 
-    def iterate(self, tau: Array, v: Array, impacts: int) -> tuple[Array, Array, Array]:
-        """The last states of orbits of so many impacts, and the code of the flight that ended an orbit before."""
+    def _rows_at_walls(self, rows: Array) -> Array:
+        """Rows of a segment, with x' > 0 at the other wall."""
+        if len(self.walls) == 2:
+            rows[np.ix_(rows[:, 11] == 1, [3, 9, 10])] *= -1
+        return rows
+
+    def iterate(self, tau: Array, v: Array, impacts: int) -> tuple[Array, Array, Array, Array]:
+        """The last states of orbits of so many impacts, the code of the flight that ended an orbit before, and 1 where
+        the last state is one of the other wall, else 0.
+        """
         if self.linear and tau.size <= TABLES.alone and impacts <= TABLES.block:
             return self._iterate_alone(tau, v, impacts)
-        size = -(-tau.size // LANES) * LANES if self.linear else tau.size
-        times, speeds = np.resize(tau, size), np.resize(v, size)
+        abreast = self.linear and len(self.walls) == 1  # a batch of states is one of states at one wall
+        size = -(-tau.size // LANES) * LANES if abreast else tau.size
+        times, speeds, sides = np.resize(tau, size), np.resize(v, size), np.zeros(size)
         status = np.where(speeds > 0, 0, AT_REST).astype(np.int8)
         status[tau.size :] = AT_REST
-        name = "batch_entry" if self.linear else self.main
-        entry, begin = self._compiled(name, 0.0, self.law), 0
+        name = "batch_entry" if abreast else self.main
+        entry, begin = self._compiled(name, 0.0, self.laws), 0
         while begin < size:
             few = slice(begin, min(begin + LANES, size))
             if entry is None:
-                entry = self._compiled(name, self.price * (few.stop - begin) * impacts, self.law)
+                entry = self._compiled(name, self.price * (few.stop - begin) * impacts, self.laws)
             if entry is None:
-                self.interpreter.iterate(times[few], speeds[few], impacts, self.rho, status[few])
+                self.interpreter.iterate(times[few], speeds[few], impacts, self.rho, sides[few], status[few])
                 begin = few.stop
                 continue
             block = max(LANES, TABLES.block // max(impacts, 1) // LANES * LANES)
@@ -401,25 +441,26 @@ class CompiledModel:
 
             def fly(lanes: slice, entry: Callable[..., int] = entry) -> None:
                 """Orbits of whole batches."""
-                chosen = slice(lanes.start * LANES, min(lanes.stop * LANES, size)) if self.linear else lanes
+                chosen = slice(lanes.start * LANES, min(lanes.stop * LANES, size)) if abreast else lanes
                 codes = status[chosen]
                 states = times[chosen], speeds[chosen], self.rho
-                self._call(entry, (entries.ITERATE, codes.size, impacts), states, status=codes)
+                self._call(entry, (entries.ITERATE, codes.size, impacts), states, sides[chosen], codes)
 
-            lanes = LANES if self.linear else 1
-            least = (TABLES.batched if self.linear else TABLES.shared) // max(impacts, 1) // lanes
+            lanes = LANES if abreast else 1
+            least = (TABLES.batched if abreast else TABLES.shared) // max(impacts, 1) // lanes
             shared_out(fly, begin // lanes, -(-end // lanes), max(1, least))
             begin = end
-        return times[: tau.size], speeds[: tau.size], status[: tau.size]
+        return times[: tau.size], speeds[: tau.size], status[: tau.size], sides[: tau.size]
 
-    def _iterate_alone(self, tau: Array, v: Array, impacts: int) -> tuple[Array, Array, Array]:
+    def _iterate_alone(self, tau: Array, v: Array, impacts: int) -> tuple[Array, Array, Array, Array]:
         """`iterate` of each orbit as a segment."""
         times, speeds, codes = tau.copy(), v.copy(), np.where(v > 0, 0, AT_REST).astype(np.int8)
+        sides = np.zeros(tau.size)
         for index in np.flatnonzero(codes == 0).tolist():
             rows, codes[index] = self.segment(times[index], speeds[index], impacts)
             if len(rows):
-                times[index], speeds[index] = times[index] + rows[-1, 0], rows[-1, 1]
-        return times, speeds, codes
+                times[index], speeds[index], sides[index] = times[index] + rows[-1, 0], *rows[-1, [1, 11]]
+        return times, speeds, codes, sides
 
     def brackets(self, tau: Array, velocities: Array, settings: tuple[float, ...]) -> tuple[Array, Array] | None:
         """Brackets of gamma, shape (n, 2), and codes; None where no compiled entry of a linear model is there.
@@ -440,9 +481,10 @@ class CompiledModel:
 
     def _search(self, seconds: float) -> Callable[..., int] | None:
         """The entry of searches along orbits; None where it is not compiled."""
-        if not self.linear or self._compiled(self.main, seconds, self.law) is None:
+        one_wall = self.linear and len(self.walls) == 1
+        if not one_wall or self._compiled(self.main, seconds, self.laws) is None:
             return None
-        return self._compiled("search_entry", 0.0, self.law)
+        return self._compiled("search_entry", 0.0, self.laws)
 
     def limits(self, tau: Array, v: Array, settings: tuple[float, float, float]) -> tuple[Array, Array] | None:
         """Codes of chatters, and end, error and impacts, shape (3, n); None where no compiled entry flies them.

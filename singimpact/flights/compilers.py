@@ -110,7 +110,7 @@ def _chosen(steps: bool) -> dict[str, Any]:
         name: function
         for module in MODULES
         for name, function in functions_of(module).items()
-        if name not in ("block", "called", LAW)
+        if name not in ("block", "beyond", "called", LAW)
     }
     if steps:
         functions |= {name: functions[other] for name, other in IN_STEPS.items()}
@@ -182,4 +182,5 @@ def _of_addresses() -> dict[str, Built]:
         return places
 
     bound: Built = numba.njit(**UNWRAPPED)(block)
-    return {"block": bound, LAW: law, "called": called}
+    onwards: Built = numba.njit(**UNWRAPPED)(lambda flat, at: moved(flat, at))  # type: ignore[call-arg]
+    return {"block": bound, "beyond": onwards, LAW: law, "called": called}

@@ -29,17 +29,19 @@ from singimpact.flights.response import response, response_of_one, touching
 from singimpact.flights.results import SCALAR_STATUS, Derivative
 from singimpact.flights.states import States
 from singimpact.flights.undecided import Flown, flights_and_rows
+from singimpact.flights.walls import at_walls
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration
-from singimpact.status import Status
+from singimpact.status import Status, Wall
 
 
-def derivative(osc: Oscillator, tau: Any, v: Any, *, horizon: Any = None) -> Derivative:
+def derivative(osc: Oscillator, tau: Any, v: Any, *, horizon: Any = None, wall: Any = None) -> Derivative:
     """D G at states, from the variational equation.
 
     Parameters
     ----------
     osc : the model. tau, v : states, v >= 0; they broadcast. horizon : time after which a flight is given up.
+    wall : of the states of a model with two walls, as for `first_hit`.
 
     Returns
     -------
@@ -51,8 +53,10 @@ def derivative(osc: Oscillator, tau: Any, v: Any, *, horizon: Any = None) -> Der
     >>> (derivative(Oscillator("0", "-2", 0, "1/2"), 0, 1).matrix + 0).tolist()
     [[1.0, 1.0], [0.0, 0.5]]
     """
+    if wall is not None:
+        return at_walls(partial(derivative, horizon=horizon), osc, wall, (tau, v))  # type: ignore[no-any-return]
     flown = None
-    if type(tau) is float and type(v) is float and horizon is None and not names_in(osc.restitution):
+    if type(tau) is float and type(v) is float and horizon is None and compiled_model(osc).constant_restitution:
         result, flown = _of_one(osc, tau, v)
         if result is not None:
             return result
@@ -75,12 +79,14 @@ def derivative(osc: Oscillator, tau: Any, v: Any, *, horizon: Any = None) -> Der
     columns[:, status != Status.hit] = np.nan
     slope = rebound_slope(osc, velocity)
     matrix = np.stack([1 + columns[0], columns[1], slope * columns[2], slope * columns[3]], axis=-1).reshape(-1, 2, 2)
-    if names_in(osc.restitution):
+    if not model.constant_restitution:
         dead = (status == Status.hit) & np.isnan(rebound(osc, velocity))
         status[dead], matrix[dead] = Status.no_rebound, np.nan
     touch, rest = np.flatnonzero(status == Status.graze), np.flatnonzero(status == Status.sticks)
     if touch.size:
-        matrix[touch] = _at_touch(*touching(osc, states.tau[touch], states.v[touch], hit.flight_time[touch]))
+        by_tau, by_v = touching(osc, states.tau[touch], states.v[touch], hit.flight_time[touch])
+        side = np.where(np.broadcast_to(hit.wall, status.shape)[touch] == Wall.upper, -1.0, 1.0)
+        matrix[touch] = _at_touch(side * by_tau, side * by_v)
     if rest.size:
         matrix[rest] = _at_rest(osc, acceleration(osc, states.tau[rest]))
     return Derivative(matrix.reshape(*states.shape, 2, 2), status.reshape(states.shape)[()])
@@ -95,7 +101,8 @@ def _of_one(osc: Oscillator, tau: float, v: float) -> tuple[Derivative | None, F
     late, later, faster, fast = hit[TIME_BY_TAU : VELOCITY_BY_V + 1]
     if not model.linear or isnan(late):
         late, later, faster, fast = response_of_one(osc, tau, v, hit[0], hit[1])
-    matrix = np.array([[1 + late, later], [-model.r * faster, -model.r * fast]])
+    slope = -model.r if hit[1] < 0 else model.rates[-1]
+    matrix = np.array([[1 + late, later], [slope * faster, slope * fast]])
     return Derivative(matrix, SCALAR_STATUS[0]), None
 
 
@@ -131,12 +138,15 @@ class QuadratureSettings:
 SETTINGS = QuadratureSettings()
 
 
-def log_determinant(osc: Oscillator, tau: Array, v: Array, time: Array, velocity: Array) -> Array:
+def log_determinant(
+    osc: Oscillator, tau: Array, v: Array, time: Array, velocity: Array, wall: Array | None = None
+) -> Array:
     """ln |det D G| of impacts: flights from (tau, v), v > 0, that hit after `time` with x' = velocity < 0.
 
     Parameters
     ----------
-    osc : the model. tau, v, time, velocity : shape (n,).
+    osc : the model. tau, v, time, velocity : shape (n,). wall : of the launches, of a model with two walls, where the
+        velocity is > 0 at the upper one.
 
     Examples
     --------
@@ -146,6 +156,12 @@ def log_determinant(osc: Oscillator, tau: Array, v: Array, time: Array, velocity
     >>> log_determinant(osc, np.zeros(1), np.ones(1), hit.flight_time, hit.velocity).round(9).tolist()
     [-2.206788838]
     """
+    if wall is not None and wall.any():
+        logs = np.empty(tau.size)
+        for each, model, side in ((0, osc, 1), (1, osc.mirrored, -1)):
+            at = wall == each
+            logs[at] = log_determinant(model, tau[at], v[at], time[at], side * velocity[at])
+        return logs
     loss = _integral_of_damping(osc, tau, v, time)
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.asarray(np.log(np.abs(rebound_slope(osc, velocity)) * v / np.abs(velocity)) - loss)

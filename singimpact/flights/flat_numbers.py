@@ -1,9 +1,12 @@
 """The numbers of a model in the flat arrays that kernels read, and the rules of its flights."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 
 import numpy as np
 
+from singimpact.algebra.expressions import Number, subtract
 from singimpact.algebra.numbers import Array, as_float
 from singimpact.codegen.taylor_recurrence import Recurrence
 from singimpact.flights.horizons import Allowance
@@ -22,6 +25,15 @@ from singimpact.flights.model_numbers import (
 from singimpact.oscillator.model import Oscillator
 
 EPSILON = UNIT
+
+
+def gap_of(osc: Oscillator) -> tuple[float, float]:
+    """The distance of both walls as a double, and what the double leaves out; inf and 0 of a model with one wall."""
+    if osc.upper is None:
+        return np.inf, 0.0
+    gap = subtract(osc.upper, osc.clearance)
+    high = as_float(gap)
+    return high, as_float(subtract(gap, Number(Fraction(high))))
 
 
 @dataclass(frozen=True)
@@ -56,6 +68,33 @@ class TableSettings:
 TABLES = TableSettings()
 
 
+def walls_laid_out(
+    osc: Oscillator, allowance: Allowance, flows: Sequence[Recurrence | None], laws: Sequence[Array]
+) -> tuple[Array, Array, Array]:
+    """Sizes and numbers of a model as the kernels read them, see `kernels.layout`, and the constants of its laws.
+
+    Behind a model with two walls lies the one with x -> -x, and so behind its law.
+
+    Parameters
+    ----------
+    flows : the recurrence of f and g, None of a linear model; and that of the model with x -> -x. laws : constants of
+        the restitution, and those of the upper wall.
+    """
+    laws = _of_one_length(laws)
+    sizes, flat = laid_out(osc, allowance, flows[0], laws[0])
+    if osc.upper is None:
+        return sizes, flat, laws[0]
+    others, behind = laid_out(osc.mirrored, allowance, flows[1], laws[1])
+    sizes, rho = np.maximum(sizes, others), np.concatenate(laws)
+    return sizes, np.concatenate([flat, behind] if flows[0] is None else _of_one_length([flat, behind])), rho
+
+
+def _of_one_length(arrays: Sequence[Array]) -> list[Array]:
+    """Arrays whose last number stays the last: an address is read from there."""
+    length = max(array.size for array in arrays)
+    return [np.concatenate([array[:-1], np.zeros(length - array.size), array[-1:]]) for array in arrays]
+
+
 def laid_out(osc: Oscillator, allowance: Allowance, flow: Recurrence | None, rho: Array) -> tuple[Array, Array]:
     """Sizes and numbers of a model as the kernels read them, see `kernels.layout`.
 
@@ -71,7 +110,7 @@ def laid_out(osc: Oscillator, allowance: Allowance, flow: Recurrence | None, rho
     rules = (allowance.horizon, LIMITS.longest if flow is None else allowance.steps, order, short,
              LIMITS.safety * (EPSILON if flow is None else allowance.epsilon), LIMITS.likely,
              max(LIMITS.rough[0], coarse), max(LIMITS.rough[1], coarse), pace,
-             1 - as_float(osc.slope_at_rest()), allowance.reach)  # fmt: skip
+             1 - as_float(osc.slope_at_rest()), allowance.reach, *gap_of(osc))  # fmt: skip
     room = max(order, degree_for(LIMITS.judging)) + 2 + LIMITS.derivatives_at_rest
     sizes = np.zeros(8, dtype=np.int64)
     sizes[layout.RHO] = rho.size

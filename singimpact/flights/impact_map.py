@@ -25,6 +25,7 @@ from singimpact.flights.rebound_law import rebound
 from singimpact.flights.response import response
 from singimpact.flights.results import SCALAR_STATUS, Flight, Step
 from singimpact.flights.states import States
+from singimpact.flights.walls import at_walls
 from singimpact.inputs import refuse
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration_at
@@ -46,6 +47,7 @@ def first_hit(
     horizon: Any = None,
     steps: int | None = None,
     out: Mapping[str, Array] | None = None,
+    wall: Any = None,
 ) -> Flight:
     """The first hit of the obstacle by the flight from (tau, v).
 
@@ -62,6 +64,8 @@ def first_hit(
         fewer where f and g have many products and functions (700 of 100).
     out : arrays that take the results, by field: {"flight_time": a, "velocity": b}, memory maps too. Of the shape of
         the states, doubles (`status` and `cause`: int8). Other fields than these, `status` and `cause` are not kept.
+    wall : of the states of a model with two walls, "lower" (also without it) or "upper"; an array of them, or of 0 and
+        1.
 
     Returns
     -------
@@ -74,6 +78,9 @@ def first_hit(
     >>> hit.flight_time.tolist(), hit.velocity.tolist(), hit.status.tolist()
     ([0.0, 1.0, 3.0], [0.0, -1.0, -3.0], [2, 0, 0])
     """
+    if wall is not None:
+        fly = partial(first_hit, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps, out=out)
+        return at_walls(fly, osc, wall, (tau, v), out)  # type: ignore[no-any-return]
     flown = None
     if type(tau) is float and type(v) is float and digits is tolerance is horizon is steps is None and out is None:
         fields, flown = plain_fields(compiled_model(osc), tau, v)
@@ -97,6 +104,7 @@ def impact_map(
     horizon: Any = None,
     steps: int | None = None,
     out: Mapping[str, Array] | None = None,
+    wall: Any = None,
 ) -> Step:
     """The impact map G(tau, v) = (tau + T, -r x'(T)); parameters as in `first_hit`.
 
@@ -111,13 +119,17 @@ def impact_map(
     >>> step.tau, step.v, step.status
     (4.0, 1.5, np.int8(0))
     """
+    if wall is not None:
+        fly = partial(impact_map, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps, out=out)
+        return at_walls(fly, osc, wall, (tau, v), out)  # type: ignore[no-any-return]
     flown = None
     if type(tau) is float and type(v) is float and digits is tolerance is horizon is steps is None and out is None:
         model = compiled_model(osc)
         fields, flown = plain_fields(model, tau, v) if model.constant_restitution else (None, None)
         if fields is not None:
-            later = fields.pop("later")
-            return Step.made(later, tau=tau + fields["flight_time"], v=-model.r * fields["velocity"], **fields)
+            later, velocity = fields.pop("later"), fields["velocity"]
+            v = -model.r * velocity if velocity < 0 else model.rates[-1] * velocity
+            return Step.made(later, tau=tau + fields["flight_time"], v=v, **fields)
     if many(tau, v, out, digits):
         fly = partial(impact_map, osc, tolerance=tolerance, horizon=horizon, steps=steps)
         return in_blocks(fly, tau, v, out)  # type: ignore[no-any-return]
@@ -135,7 +147,7 @@ def landed(osc: Oscillator, states: States, hit: Flight) -> Step:
     tau = landing_times(states, hit.flight_time)
     fields, model = vars(hit).copy(), compiled_model(osc)
     later = fields.pop("_later", None)
-    if model.constant_restitution:
+    if model.constant_restitution and osc.upper is None:
         return Step.made(later, **fields, tau=tau[()], v=np.abs(model.r * hit.velocity)[()])
     bounce = rebound(osc, np.asarray(hit.velocity))
     dead = (np.asarray(hit.status) == Status.hit) & np.isnan(bounce)
@@ -177,6 +189,8 @@ def plain_fields(model: CompiledModel, tau: float, v: float) -> tuple[dict[str, 
         "cause": NONE,
         "notes": NO_NOTES,
     }
+    if model.osc.upper is not None:
+        fields["wall"] = np.int8(hit[1] > 0)
     if not model.linear:
         return fields | {"later": partial(undecided.judged_alone, model, tau, v)}, None
     fields["condition"], fields["velocity_condition"], fields["time_error"], fields["velocity_error"] = hit[2:6]
@@ -276,7 +290,7 @@ def shaped(flight: Flight, shape: tuple[int, ...]) -> Flight:
         flight.__dict__["status"] = status_array(flight.status)
         return flight
     fields = {
-        name: value if name == "notes" else np.asarray(value).reshape(shape)[()]
+        name: value if name == "notes" or value is None else np.asarray(value).reshape(shape)[()]
         for name, value in vars(flight).items()
         if name != "_later"
     }

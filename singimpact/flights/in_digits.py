@@ -13,12 +13,12 @@ from singimpact.algebra.expressions import Expression
 from singimpact.algebra.numbers import Array, as_mpf, sign_of
 from singimpact.algebra.precision import digits_at, for_user
 from singimpact.flights import undecided
-from singimpact.flights.causes import decoded
 from singimpact.flights.compiled_model import allowed
 from singimpact.flights.enclosures.certified_hit import ENCLOSURE, Launch, ProvedImpact, certified_hit
 from singimpact.flights.enclosures.equation import NoHit, Refused
 from singimpact.flights.horizons import Allowance
 from singimpact.flights.kernels.entries import HITS
+from singimpact.flights.kernels.state import ACROSS
 from singimpact.flights.multiprecision import found
 from singimpact.flights.rebound_law import rebound_in_digits
 from singimpact.flights.results import CertifiedImpact, Flight, Step
@@ -42,7 +42,8 @@ def flights(osc: Oscillator, states: States, digits: int, allowance: Allowance) 
     fields = [np.empty(size, dtype=object) for _ in range(4)]
     certified, reasons = np.full(size, None, dtype=object), {}
     at_hand = np.array([index not in lost for index in range(size)], dtype=bool)
-    in_doubles = at_hand & (states.v > 0) & (roughs[0] > 0) & (roughs[1] < 0)  # from rest the rows are not filled
+    moving = (roughs[1] < 0) | ((roughs[1] > 0) & (osc.upper is not None))
+    in_doubles = at_hand & (states.v > 0) & (roughs[0] > 0) & moving  # from rest the rows are not filled
     roughs = np.where(in_doubles, roughs[:2], np.nan)
     open_ones = in_doubles & np.isnan(kappas).any(axis=0)
     if open_ones.any():
@@ -66,12 +67,12 @@ def flights(osc: Oscillator, states: States, digits: int, allowance: Allowance) 
             codes[index], numbers = found(osc, states, index, digits, limit, int(budgets[index]))
         if index not in lost:
             rows[:4, index] = [float(number) for number in numbers]
-        status = int(codes[index]) if codes[index] < 20 else int(Status.unresolved)
-        numbers = numbers if codes[index] < 20 else (nan,) * 4
+        code = int(codes[index]) % ACROSS
+        status, numbers = (code, numbers) if code < 20 else (int(Status.unresolved), (nan,) * 4)
         with digits_at(digits) as mp:
             for field, value in zip(fields, _shown(status, numbers), strict=True):
                 field[index] = for_user(+mp.convert(value))
-    fates = undecided.Fates(*decoded(codes), rows)
+    fates = undecided.Fates.of(codes, rows)
     for index, (_, _, cause) in lost.items():
         fates.cause[index] = cause
     notes = dict(undecided.notes_of(osc, states, fates))
@@ -96,6 +97,7 @@ def flights(osc: Oscillator, states: States, digits: int, allowance: Allowance) 
         cause=fates.cause,
         notes=notes,
         certified=certified,
+        wall=None if osc.upper is None else fates.walls,
     )
 
 
@@ -130,6 +132,7 @@ def _plain_hit(osc: Oscillator, states: States, digits: int, allowance: Allowanc
         error.copy(),
         certified=certified,
         cause=np.zeros(1, np.int8),
+        wall=None if osc.upper is None else np.array([hit[1] > 0], np.int8),
     )
 
 
@@ -164,7 +167,7 @@ def _known_in_doubles(
     model = allowed(osc, allowance)
     if model.linear:
         codes, rows = model.hits(model.near(states.tau), states.v)
-        fates = undecided.Fates(*decoded(codes), rows)
+        fates = undecided.Fates.of(codes, rows)
         undecided.escapes(osc, model, states, fates)
         gone = (states.v > 0) & ((fates.status == Status.no_return) | (fates.status == Status.escaped))
         return {int(i): (int(fates.status[i]), rows[:4, i], 0) for i in np.flatnonzero(gone)}, budgets, rows, rows[2:4]

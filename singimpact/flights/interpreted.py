@@ -3,6 +3,7 @@
 No table in double-double is filled here: a hit that is to be refined is left to balls.
 """
 
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ import numpy as np
 from singimpact.algebra.numbers import Array
 from singimpact.flights.bind import Emitted, over_floats
 from singimpact.flights.kernels import layout
-from singimpact.flights.kernels.state import Work
+from singimpact.flights.kernels.state import ACROSS, FLIGHT_TIME, VELOCITY, Work
 
 LEFT_OPEN = (ZeroDivisionError, OverflowError, ValueError, TypeError)
 """What Python raises where doubles have an answer: 1/0, exp(1000), log(-1), a comparison of (-1)**0.5."""
@@ -34,15 +35,20 @@ def workspace(zero: Any, order: int, rows: int) -> Work:
 class Interpreter:
     """One model over lists."""
 
-    def __init__(self, emitted: Emitted, flat: Array, sizes: Array) -> None:
-        self.space = over_floats(emitted.flow, emitted.rho)
-        self.sizes, self.linear = sizes, not emitted.flow
-        views = layout.linear_model(flat, sizes) if self.linear else layout.taylor_model(flat, sizes)
-        self.model = listed(views)
-        if self.linear:
-            self.model = self.model._replace(fine=[])
-            self.space["tabulate"](self.model.numbers, self.model.table)
-            self.space["bounds"](self.model.numbers, self.model.table)
+    def __init__(self, emitted: Sequence[Emitted], flats: Sequence[Array], sizes: Array) -> None:
+        """`emitted`, `flats` : of the model, and of the one with x -> -x where there is another wall."""
+        self.sizes, self.linear = sizes, not emitted[0].flow
+        self.spaces = [over_floats(text.flow, text.rho) for text in emitted]
+        self.models = [self._model(*each) for each in zip(self.spaces, flats, strict=True)]
+        self.space, self.model = self.spaces[0], self.models[0]
+
+    def _model(self, space: Mapping[str, Any], flat: Array) -> Any:
+        if not self.linear:
+            return listed(layout.taylor_model(flat, self.sizes))
+        model = listed(layout.linear_model(flat, self.sizes))._replace(fine=[])
+        space["tabulate"](model.numbers, model.table)
+        space["bounds"](model.numbers, model.table)
+        return model
 
     def work(self) -> Any:
         """New scratch."""
@@ -69,16 +75,39 @@ class Interpreter:
     def segment(self, tau: float, v: float, near: float, w: Array, out: Array) -> tuple[int, int]:
         """One orbit, an impact a row."""
         work, _ = self.work()
-        rows = out.tolist()
-        flown, code = self.space["orbit_segment"](tau, v, near, w.tolist(), self.model, work, rows)
+        rows, laws = out.tolist(), [law.tolist() for law in np.split(w, len(self.models))]
+        if len(self.models) == 1:
+            flown, code = self.space["orbit_segment"](tau, v, near, laws * 2, self.models * 2, work, rows)
+            out[...] = rows
+            return flown, code
+        # `orbit_segment` with what is bound for the flow and the law of each wall
+        since, lost, side, flown, code = 0.0, 0.0, 0, 0, 0
+        while flown < len(rows) and not code:
+            here = self.spaces[side]
+            code, push = here["hit_later"](tau, since, lost, v, near, self.models[side], work)
+            if code == ACROSS:
+                side, code = 1 - side, 0
+            if code:
+                break
+            since, lost = here["later"](since, lost, work.hit[FLIGHT_TIME])
+            v = self.spaces[side]["rebound"](work.hit[VELOCITY], laws[side])
+            here["record"](rows[flown], since, v, push, float(side), work.hit)
+            flown, code = flown + 1, 0 if v > 0 else 8
         out[...] = rows
         return flown, code
 
-    def iterate(self, tau: Array, v: Array, impacts: int, w: Array, status: Array) -> None:
+    def iterate(self, tau: Array, v: Array, impacts: int, w: Array, sides: Array, status: Array) -> None:
         """Orbits one after the other: tau, v become the last states."""
+        if len(self.models) == 2:
+            for k in np.flatnonzero(status == 0).tolist():
+                rows = np.zeros((impacts, 12))
+                flown, status[k] = self.segment(float(tau[k]), float(v[k]), 0.0, w, rows)
+                if flown:
+                    tau[k], v[k], sides[k] = tau[k] + rows[flown - 1, 0], *rows[flown - 1, [1, 11]]
+            return
         work, _ = self.work()
-        times, speeds, codes = tau.tolist(), v.tolist(), status.tolist()
-        self.space["iterate"](times, speeds, impacts, w.tolist(), self.model, work, codes)
+        times, speeds, codes, laws = tau.tolist(), v.tolist(), status.tolist(), [w.tolist()] * 2
+        self.space["iterate"](times, speeds, impacts, laws, self.models * 2, work, sides.tolist(), codes)
         tau[:], v[:], status[:] = times, speeds, codes
 
     def variations(self, tau: Array, v: Array, times: Array, out: Array) -> None:

@@ -15,32 +15,37 @@ from singimpact.flights.rebound_law import sharpened, speed_before
 from singimpact.flights.results import Step
 from singimpact.flights.states import States
 from singimpact.flights.undecided import in_shape
+from singimpact.flights.walls import at_walls
 from singimpact.oscillator.model import Oscillator, require_rebound
 from singimpact.status import Status, status_array
 
-KEPT = ("flight_time", "depth", "bound", "condition", "velocity_condition", "time_error", "velocity_error", "cause")
+KEPT = (
+    "flight_time", "depth", "bound", "condition", "velocity_condition", "time_error", "velocity_error", "cause", "wall",
+)  # fmt: skip
 
 
 @lru_cache(maxsize=64)
 def backwards(osc: Oscillator) -> Oscillator:
     """The model whose flights are those of `osc` run backwards: f(x, -x'), g(-t)."""
     turned = {"xdot": multiply(number(-1), Name("xdot")), "t": multiply(number(-1), Name("t"))}
-    return Oscillator(
-        substitute(osc.force(), turned), substitute(osc.forcing(), turned), osc.clearance, 1, period=osc.period
-    )
+    force, forcing = substitute(osc.force(), turned), substitute(osc.forcing(), turned)
+    return Oscillator(force, forcing, osc.clearance, 1, period=osc.period, upper=osc.upper)
 
 
-def inverse_map(osc: Oscillator, tau: Any, v: Any, *, digits: int | None = None, horizon: Any = None) -> Step:
+def inverse_map(
+    osc: Oscillator, tau: Any, v: Any, *, digits: int | None = None, horizon: Any = None, wall: Any = None
+) -> Step:
     """The state whose next impact leaves (tau, v): G^{-1}.
 
     Parameters
     ----------
     osc : the model. tau, v : states just after an impact, v >= 0. digits, horizon : as for the impact map.
+    wall : of these states of a model with two walls, as for the impact map.
 
     Returns
     -------
-    Step : tau and v before, flight_time > 0, velocity x' < 0 just before the impact at (tau, v); `no_rebound` where no
-        velocity rebounds to v.
+    Step : tau and v before, flight_time > 0, velocity x' < 0 just before the impact at (tau, v), > 0 at an upper wall;
+        `no_rebound` where no velocity rebounds to v. `wall` is the one of the state before.
 
     Examples
     --------
@@ -49,13 +54,15 @@ def inverse_map(osc: Oscillator, tau: Any, v: Any, *, digits: int | None = None,
     (np.float64(1.0), np.float64(3.0), np.int8(0))
     """
     require_rebound(osc, "the inverse of the impact map")
+    if wall is not None:
+        return at_walls(partial(inverse_map, digits=digits, horizon=horizon), osc, wall, (tau, v))  # type: ignore[no-any-return]
     if many(tau, v, digits=digits):
         return in_blocks(partial(inverse_map, osc, horizon=horizon), tau, v)  # type: ignore[no-any-return]
     if type(tau) is float and type(v) is float and digits is horizon is None and not names_in(osc.restitution):
         speed = v / compiled_model(osc).r if v > 0 else 0.0
         fields, _ = plain_fields(compiled_model(backwards(osc)), -tau, speed)
         if fields is not None:
-            fields |= {"tau": tau - fields["flight_time"], "v": -fields["velocity"], "velocity": -speed}
+            fields |= {"tau": tau - fields["flight_time"], "v": abs(fields["velocity"]), "velocity": -speed}
             return Step.made(fields.pop("later"), **fields)
     states = States.read(tau, v).in_period(osc)
     if digits is None:
@@ -73,7 +80,7 @@ def _in_doubles(osc: Oscillator, states: States, horizon: Any) -> Step:
     dead = np.isnan(speeds)
     times = -states.tau if states.v.all() else _turned(states)
     hit = first_hit(backwards(osc), times, np.where(dead, 0.0, speeds), horizon=horizon)
-    fields = {"tau": landing_times(states, -hit.flight_time), "v": -hit.velocity + 0, "velocity": -speeds}
+    fields = {"tau": landing_times(states, -hit.flight_time), "v": np.abs(hit.velocity), "velocity": -speeds}
     return _step(states, hit, fields, dead)
 
 
@@ -122,7 +129,7 @@ def _in_digits(states: States, hit: Any, speeds: Any, digits: int) -> dict[str, 
     with digits_at(digits) as mp:
         for index, (time, speed) in enumerate(zip(np.ravel(hit.flight_time), np.ravel(hit.velocity), strict=True)):
             fields["tau"][index] = for_user(as_mpf(states.exact_tau(index), mp) - mp.convert(time))
-            fields["v"][index] = for_user(-mp.convert(speed) + 0)
+            fields["v"][index] = for_user(abs(mp.convert(speed)))
             fields["velocity"][index] = for_user(-_number(speeds[index], mp))
     return fields
 

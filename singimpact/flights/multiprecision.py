@@ -13,13 +13,13 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.balls import Balls
-from singimpact.algebra.expressions import Expression, Number, Pi, multiply, number, power
+from singimpact.algebra.expressions import Expression, Number, Pi, multiply, number, power, subtract
 from singimpact.algebra.numbers import as_float, as_fraction, as_mpf, sign_of
 from singimpact.algebra.precision import balls_at, bits_at, digits_at
 from singimpact.codegen.over_lists import FUNCTIONS
 from singimpact.flights.bind import over_lists, over_mpmath
 from singimpact.flights.interpreted import workspace
-from singimpact.flights.kernels.state import Rules
+from singimpact.flights.kernels.state import ACROSS, Rules
 from singimpact.flights.limits import LIMITS, degree_for
 from singimpact.flights.model_numbers import constants_of, linear_numbers, linear_waves, recurrence_of
 from singimpact.flights.no_return.polynomial import never_returns, never_turns
@@ -63,28 +63,31 @@ def agreed(osc: Oscillator, states: States, index: int, digits: int, limit: floa
     """
     precision = digits + LIMITS.guard
     outcome = flown(osc, states, index, precision, limit, budget)
-    while precision < 4 * digits + 500 and outcome[0] < 20:
+    while precision < 4 * digits + 500 and outcome[0] % ACROSS < 20:
         precision = precision + max(LIMITS.guard, precision // 4)
         again = flown(osc, states, index, precision, limit, budget)
         if _over(outcome) and _over(again):
             return _escaping(osc, states, index, again)
-        if outcome[0] == again[0] != Status.unresolved and _close(outcome[1], again[1], digits):
+        open_ = outcome[0] % ACROSS == Status.unresolved
+        if outcome[0] == again[0] and not open_ and _close(outcome[1], again[1], digits):
             return again
         outcome = again
-    if outcome[0] == Status.unresolved and _touches(outcome[1]):
-        return int(Status.graze), outcome[1]
-    return _escaping(osc, states, index, outcome) if outcome[0] > 20 else outcome
+    if outcome[0] % ACROSS == Status.unresolved and _touches(outcome[1]):
+        return outcome[0] - Status.unresolved + Status.graze, outcome[1]
+    return _escaping(osc, states, index, outcome) if outcome[0] % ACROSS > 20 else outcome
 
 
 def _over(outcome: Outcome) -> bool:
     """Whether a flight came to the horizon, or left the range of numbers, and to no graze."""
-    code, (_, _, depth, bound) = outcome
+    code, (_, _, depth, bound) = outcome[0] % ACROSS, outcome[1]
     with bits_at(53):
         return code == Status.no_return or code > 20 or (code == Status.unresolved and not depth <= 10 * bound)
 
 
 def _escaping(osc: Oscillator, states: States, index: int, outcome: Outcome) -> Outcome:
     """`escaped` in place of `no_return` where it is proved; doubles are enough for that."""
+    if osc.upper is not None:
+        return outcome
     form, numbers = linear_form(osc), outcome[1]
     time, speed, place = (np.array([float(value)]) for value in numbers[:3])
     proved = (
@@ -128,11 +131,12 @@ def settled(fly: Callable[[int], Outcome]) -> tuple[int, list[float]] | None:
     """
     for digits in LIMITS.settling_digits:
         code, numbers = fly(digits)
-        if code > 20:
+        if code % ACROSS > 20:
             return None
-        if code != Status.unresolved:
+        if code % ACROSS != Status.unresolved:
             return code, [float(value) for value in numbers]
-    return (int(Status.graze), [float(value) for value in numbers]) if _touches(numbers) else None
+    touch = code - Status.unresolved + Status.graze
+    return (touch, [float(value) for value in numbers]) if _touches(numbers) else None
 
 
 def flown(osc: Oscillator, states: States, index: int, digits: int, limit: float, budget: int) -> Outcome:
@@ -157,7 +161,7 @@ def _march(
     space = over_mpmath(mp, _flow(osc), exact_restart=False)
     order = degree_for(float(mp.eps)) if mp.prec < 1000 else int(mp.prec / 2.15)
     order += removed - 1
-    rules = Rules(mp.mpf(limits[0]), limits[1], order, order, 8 * mp.eps, 0, 0, 0, 0, 0, 0)
+    rules = Rules(mp.mpf(limits[0]), limits[1], order, order, 8 * mp.eps, 0, 0, 0, 0, 0, 0, gap_in_digits(osc, mp), 0)
     if linear_form(osc) is None:
         space["coefficients"] = _in_balls(osc, mp.prec + 32, mp)
         p: Any = [as_mpf(tree, mp) for tree in constants_of(osc)]
@@ -167,7 +171,17 @@ def _march(
     code, *numbers = space["taylor_flight"](
         forcing_phases(osc, states, index, mp), v, removed, mp.nan, p, rules, workspace(mp.mpf(0), order, rows), []
     )
-    return int(code), (numbers[0], numbers[1], numbers[2], numbers[3])
+    return at_wall(int(code), numbers)
+
+
+def at_wall(code: int, numbers: Any) -> Outcome:
+    """An outcome whose hit at the upper wall is a hit with x' > 0."""
+    return (0, (numbers[0], -numbers[1], *numbers[2:4])) if code == ACROSS else (code, tuple(numbers[:4]))
+
+
+def gap_in_digits(osc: Oscillator, mp: Any) -> Any:
+    """The distance of both walls; inf of a model with one."""
+    return mp.inf if osc.upper is None else as_mpf(subtract(osc.upper, osc.clearance), mp)
 
 
 def _flow(osc: Oscillator) -> str:

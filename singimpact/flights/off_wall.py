@@ -12,12 +12,13 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.expressions import Expression, Number, subtract
+from singimpact.algebra.expressions import Expression, Number, negate, subtract
 from singimpact.algebra.numbers import Array, as_float, as_mpf, constant, float_array
 from singimpact.algebra.precision import digits_at
 from singimpact.flights.bind import over_mpmath
-from singimpact.flights.causes import decoded, where
+from singimpact.flights.causes import where
 from singimpact.flights.compiled_model import CompiledModel, allowed, compiled_model
+from singimpact.flights.flat_numbers import gap_of
 from singimpact.flights.horizons import Allowance, horizon_of, steps_of
 from singimpact.flights.impact_map import impact_map
 from singimpact.flights.interpreted import workspace
@@ -42,8 +43,8 @@ class Launched(Result):
 
     Parameters
     ----------
-    tau, v : the states just after the impacts, as those of a `Step`. flight_time : from the start to the impact; inf
-        when there is none, nan beside `unresolved`. velocity : x' at the impact.
+    tau, v, wall : the states just after the impacts, as those of a `Step`. flight_time : from the start to the impact;
+        inf when there is none, nan beside `unresolved`. velocity : x' at the impact.
     status, cause : int8, see `singimpact.status`.
     notes : for unresolved flights, by their index in the flat arrays: where the flight came to.
     """
@@ -55,6 +56,7 @@ class Launched(Result):
     status: Any
     cause: Any
     notes: Mapping[int, str] = field(default_factory=dict)
+    wall: Any = None
 
     __repr__ = in_words
 
@@ -80,7 +82,8 @@ def launch(osc: Oscillator, x: Any, xdot: Any, t: Any, *, horizon: Any = None) -
 
     Parameters
     ----------
-    osc : the model. x : places, at or above the clearance. xdot : velocities of either sign. t : times; they broadcast.
+    osc : the model. x : places, at or above the clearance, at or below an upper wall.
+    xdot : velocities of either sign. t : times; they broadcast.
     horizon : time after which a flight is given up; None for the package default.
 
     Returns
@@ -112,29 +115,47 @@ def launch(osc: Oscillator, x: Any, xdot: Any, t: Any, *, horizon: Any = None) -
         shapes = ", ".join(str(column.shape) for column in columns)
         raise InputError(f"x, xdot and t have shapes {shapes}: give shapes that broadcast") from None
     columns += [float_array("xdot", columns[1]), _heights(osc, columns[0])]
+    if osc.upper is not None:
+        columns.append(_heights(osc.mirrored, negated(columns[0])))
     flat = [column if column.shape == shape else np.broadcast_to(column, shape) for column in columns]
-    places, speeds, times, u, heights = (column.ravel() for column in flat)
+    places, speeds, times, u, *heights = (column.ravel() for column in flat)
     flown = _Flown(osc, horizon, States.read(times, np.zeros(times.size)).in_period(osc), u)
-    flown.above(np.flatnonzero(heights > 0), heights, (times, speeds, places))
-    on_wall = np.flatnonzero(heights == 0)
-    if on_wall.size:
-        flown.at_wall(on_wall[u[on_wall] >= 0], times, speeds)
-        flown.into_wall(on_wall[u[on_wall] < 0])
+    flown.above(np.flatnonzero(np.min(heights, axis=0) > 0), heights[0], (times, speeds, places))
+    for wall, above in enumerate(heights):
+        # away from the upper wall is x' < 0
+        side, on_wall = 1 - 2 * wall, np.flatnonzero(above == 0)
+        if on_wall.size:
+            away = side * u[on_wall] >= 0
+            flown.at_wall(on_wall[away], times, speeds if not wall else negated(speeds), wall)
+            flown.into_wall(on_wall[~away])
     return flown.result(shape)
+
+
+def negated(values: Array) -> Array:
+    """Numbers as they were written, times -1."""
+    if values.dtype.kind == "f":
+        return np.negative(values)
+    texts = [negate(constant("x", value)) for value in values.ravel().tolist()]
+    boxed = np.empty(len(texts), dtype=object)
+    boxed[:] = texts
+    return boxed.reshape(values.shape)
 
 
 def _of_one(osc: Oscillator, x: float, xdot: float, t: float) -> Launched | None:
     """A plain hit from three floats off the wall; None for all that needs a closer look."""
-    model, (high, low) = _usual(osc)
+    model, (high, low), gap = _usual(osc)
     height = fsum((x, -high, -low))  # rounded once
-    if not (0 < height < inf and -inf < xdot < inf and -model.nearest < t < model.nearest):
+    if not (0 < height < gap and -inf < xdot < inf and -model.nearest < t < model.nearest):
         return None
     code, (time, velocity, *_) = model.one(DROPS, t, xdot, height)
     if code:
         return None
-    after = abs(model.r * velocity) if model.constant_restitution else float(rebound(osc, np.array(velocity)))
-    status = Status.no_rebound if isnan(after) else Status.hit
-    return Launched(t + time, after, time, velocity, SCALAR_STATUS[status], SCALAR_STATUS[0])
+    rate = model.r if velocity < 0 else model.rates[-1]
+    after = abs(rate * velocity) if model.constant_restitution else float(rebound(osc, np.array(velocity)))
+    status, wall = Status.no_rebound if isnan(after) else Status.hit, None
+    if osc.upper is not None:
+        wall = SCALAR_STATUS[velocity > 0]
+    return Launched(t + time, after, time, velocity, SCALAR_STATUS[status], SCALAR_STATUS[0], wall=wall)
 
 
 def _of_few(osc: Oscillator, x: Any, xdot: Any, t: Any) -> Launched | None:
@@ -143,7 +164,7 @@ def _of_few(osc: Oscillator, x: Any, xdot: Any, t: Any) -> Launched | None:
         type(column) is float or (type(column) is np.ndarray and column.dtype == float) for column in (x, xdot, t)
     ):
         return None
-    model, (high, low) = _usual(osc)
+    model, (high, low), gap = _usual(osc)
     try:
         if not 0 < np.broadcast(x, xdot, t).size <= FEW_STARTS:
             return None
@@ -153,22 +174,23 @@ def _of_few(osc: Oscillator, x: Any, xdot: Any, t: Any) -> Launched | None:
     total = heights + xdot + t  # of their shape; not finite where one of them is not
     if not model.constant_restitution or not np.isfinite(total).all():
         return None
-    if not np.min(heights) > 0 or not np.max(np.abs(t)) < model.nearest:
+    if not np.min(heights) > 0 or not np.max(heights) < gap or not np.max(np.abs(t)) < model.nearest:
         return None
     tau, u, z = (np.broadcast_to(column, total.shape).ravel() for column in (t, xdot, heights))
     codes, (time, velocity, *_) = model.drops(tau, u, z)
     if np.count_nonzero(codes):
         return None
-    columns = (tau + time, np.abs(model.r * velocity), time, velocity, np.zeros(tau.size, np.int8))
-    tau, after, time, velocity, cause = (column.reshape(total.shape)[()] for column in columns)
-    return Launched(tau, after, time, velocity, status_array(np.zeros(total.shape, np.int8)), cause)
+    columns = (tau + time, rebound(osc, velocity), time, velocity, np.zeros(tau.size, np.int8), velocity > 0)
+    tau, after, time, velocity, cause, above = (column.reshape(total.shape)[()] for column in columns)
+    wall = None if osc.upper is None else np.int8(above)
+    return Launched(tau, after, time, velocity, status_array(np.zeros(total.shape, np.int8)), cause, wall=wall)
 
 
 @lru_cache(maxsize=256)
-def _usual(osc: Oscillator) -> tuple[CompiledModel, tuple[float, float]]:
-    """The compiled model under the default rules, and the clearance with its rounding."""
+def _usual(osc: Oscillator) -> tuple[CompiledModel, tuple[float, float], float]:
+    """The compiled model under the default rules, the clearance with its rounding, and the distance of both walls."""
     high = as_float(osc.clearance)
-    return compiled_model(osc), (high, as_float(subtract(osc.clearance, Number(Fraction(high)))))
+    return compiled_model(osc), (high, as_float(subtract(osc.clearance, Number(Fraction(high))))), gap_of(osc)[0]
 
 
 def _heights(osc: Oscillator, places: Array) -> Array:
@@ -181,7 +203,10 @@ def _heights(osc: Oscillator, places: Array) -> Array:
             [as_float(subtract(constant("x", position), osc.clearance)) for position in places.ravel().tolist()]
         ).reshape(places.shape)
     if heights.size and heights.min() < 0:
-        raise refuse("x", places[heights < 0].tolist()[0], f"places at or above the wall, x >= {osc.clearance}")
+        behind = places[heights < 0].tolist()[0]
+        if osc.upper is not None:
+            raise refuse("x, or -x at the upper wall,", behind, "places between both walls")
+        raise refuse("x", behind, f"places at or above the wall, x >= {osc.clearance}")
     return heights
 
 
@@ -192,7 +217,7 @@ class _Flown:
         self.osc, self.horizon, self.tau, self.turns, self.u = osc, horizon, starts.tau, starts.turns, u
         tau = starts.tau
         self.time, self.velocity, self.after = np.full((3, tau.size), np.nan)
-        self.status, self.cause = np.zeros(tau.size, np.int8), np.zeros(tau.size, np.int8)
+        self.status, self.cause, self.wall = np.zeros((3, tau.size), np.int8)
         self.notes: dict[int, str] = {}
 
     def above(self, at: Array, heights: Array, written: tuple[Array, Array, Array]) -> None:
@@ -204,10 +229,11 @@ class _Flown:
             model = allowed(self.osc, Allowance(horizon_of(self.osc, self.horizon), steps=steps_of(self.osc)))
         tau, u = self.tau[at], self.u[at]
         codes, rows = model.drops(model.near(tau), u, heights[at])
-        fates = Fates(*decoded(codes), rows)
+        fates = Fates.of(codes, rows)
         if np.count_nonzero(codes):
             self._decide(model, States(tau, u, tau.shape, (tau, u)), codes, fates, (at, *written))
         self.status[at], self.cause[at], self.time[at], self.velocity[at] = fates.status, fates.cause, *rows[:2]
+        self.wall[at] = fates.walls
         self._rebound(at)
 
     def _decide(
@@ -222,7 +248,7 @@ class _Flown:
             return t, xdot, subtract(x, self.osc.clearance)
 
         for index in np.flatnonzero(codes == NOT_REFINED).tolist():
-            refined = refined_hit(self.osc, exact(index), float(rows[0, index]))
+            refined = refined_hit(self.osc, exact(index), *rows[:2, index].tolist())
             fates.status[index], rows[:2, index] = Status.hit, rows[:2, index] if refined is None else refined
         for index in np.flatnonzero(fates.cause == Cause.near_graze)[: LIMITS.settled].tolist():
             self._settle(fates, index, exact(index), model.allowance.horizon)
@@ -243,20 +269,22 @@ class _Flown:
 
         outcome = settled(partial(_in_digits, self.osc, exact, limit))
         if outcome is not None:
-            fates.status[index], fates.rows[:4, index] = outcome
-            fates.cause[index] = Cause.decided
+            fates.decide(index, *outcome)
 
-    def at_wall(self, at: Array, times: Array, speeds: Array) -> None:
-        """Starts on the wall are launches of the impact map."""
-        step = impact_map(self.osc, times[at], speeds[at], horizon=self.horizon)
+    def at_wall(self, at: Array, times: Array, speeds: Array, wall: int) -> None:
+        """Starts on a wall are launches of the impact map."""
+        where_two = None if self.osc.upper is None else wall
+        step = impact_map(self.osc, times[at], speeds[at], horizon=self.horizon, wall=where_two)
+        self.wall[at] = 0 if step.wall is None else step.wall
         self.time[at], self.velocity[at], self.after[at] = step.flight_time, step.velocity, step.v
         self.status[at], self.cause[at] = step.status, step.cause
         for index in np.flatnonzero(step.cause).tolist():
             self.notes[int(at[index])] = step.notes.get(index, "the flight comes near the wall")
 
     def into_wall(self, at: Array) -> None:
-        """Starts on the wall with x' < 0 are impacts."""
+        """Starts on a wall that move into it are impacts."""
         self.time[at], self.velocity[at], self.status[at] = 0.0, self.u[at], Status.hit
+        self.wall[at] = self.u[at] > 0
         self._rebound(at)
 
     def _rebound(self, at: Array) -> None:
@@ -269,19 +297,24 @@ class _Flown:
         """All flights in their shape."""
         parts = self.tau + self.time + self.turns, self.after, self.time, self.velocity
         tau, after, time, velocity, cause = (part.reshape(shape)[()] for part in (*parts, self.cause))
-        return Launched(tau, after, time, velocity, status_array(self.status.reshape(shape)), cause, self.notes)
+        wall = None if self.osc.upper is None else self.wall.reshape(shape)[()]
+        return Launched(tau, after, time, velocity, status_array(self.status.reshape(shape)), cause, self.notes, wall)
 
 
 def _in_digits(osc: Oscillator, exact: tuple[Expression, ...], limit: float, digits: int) -> tuple[int, Any]:
     """Code, and time, velocity, depth and bound, of a flight from t, x', x - c in many digits."""
+    from singimpact.flights.multiprecision import at_wall, gap_in_digits  # 8 ms that few calls need
+
     flow = recurrence_of(osc)
     with digits_at(digits) as mp:
         space, order = over_mpmath(mp, flow.source), degree_for(float(mp.eps))
-        rules = Rules(mp.mpf(limit), LIMITS.settling_steps, order, order, 8 * mp.eps, 0, 0, 0, 0, 0, 0)
+        rules = Rules(
+            mp.mpf(limit), LIMITS.settling_steps, order, order, 8 * mp.eps, 0, 0, 0, 0, 0, 0, gap_in_digits(osc, mp), 0
+        )
         p, work = [as_mpf(tree, mp) for tree in constants_of(osc, linear=False)], workspace(mp.mpf(0), order, flow.rows)
         t, v, work.q[0] = (as_mpf(tree, mp) for tree in exact)
         try:
             code, *numbers = space["taylor_flight"]([t], v, 0, mp.nan, p, rules, work, [])
         except (ArithmeticError, ValueError, TypeError):  # log or a root left its domain on the way
             return 22, ()
-        return int(code), tuple(numbers[:4])
+        return at_wall(int(code), numbers)

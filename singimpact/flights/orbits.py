@@ -13,13 +13,14 @@ from singimpact.flights.compiled_model import allowed, compiled_model
 from singimpact.flights.flat_numbers import EPSILON
 from singimpact.flights.impact_map import impact_map
 from singimpact.flights.kernels.hits import AT_REST, PRESSED
-from singimpact.flights.states import States
+from singimpact.flights.states import States, as_written
+from singimpact.flights.walls import at_walls, wall_codes
 from singimpact.inputs import require_memory
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.phase import reduced
 from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.result import Result, default_axes, in_words
-from singimpact.status import Status, status_array
+from singimpact.status import Status, Wall, status_array
 
 SLOW = 1e-6
 """Impacts below this velocity may be those of a chatter that is over, for a_c up to 1e10 times tau."""
@@ -37,6 +38,7 @@ class Segment:
     status : of the flight that was not flown or did not end in an impact; 0 when all were flown or the chatter left is
         short.
     cause : why that flight is unresolved, see `singimpact.status.Cause`. short : whether the chatter left is short.
+    wall : of each impact, int8; at the upper wall the velocity is > 0.
     """
 
     tau: Array
@@ -50,14 +52,18 @@ class Segment:
     status: int
     cause: int
     short: bool
+    wall: Array
 
 
-def orbit_segment(osc: Oscillator, tau: float, v: float, count: int, near_end: float = 0.0) -> Segment:
+def orbit_segment(
+    osc: Oscillator, tau: float, v: float, count: int, near_end: float = 0.0, wall: int = Wall.lower
+) -> Segment:
     """Fly at most `count` impacts from a state with v > 0; stop where the chatter left is short.
 
     Parameters
     ----------
     near_end : the part of the time on which a_c changes that the chatter left is below; 0 for never.
+    wall : of the state.
 
     Examples
     --------
@@ -65,25 +71,34 @@ def orbit_segment(osc: Oscillator, tau: float, v: float, count: int, near_end: f
     >>> found.tau.tolist(), found.v.tolist(), found.status
     ([1.0, 1.5, 1.75], [0.5, 0.25, 0.125], 0)
     """
-    model = compiled_model(osc)
+    model = compiled_model(osc if wall == Wall.lower else osc.mirrored)
     start = tau if osc.period is None or abs(tau) < model.nearest else float(reduced(np.array([tau]), osc.period)[0])
     rows, code = model.segment(start, v, count, near_end)
     if code == Status.no_rebound:  # the last impact leaves no velocity
         rows = rows[:-1]
     ended, cause = (int(codes[0]) for codes in decoded(np.array([0 if code == PRESSED else code])))
     since, speed, time, velocity, acceleration, condition, error = rows.T[:7]
-    return Segment(
-        tau + since, speed, time, velocity, acceleration, condition, error, rows.T[7:], ended, cause, code == PRESSED
-    )
+    slopes, walls = rows.T[7:11], rows.T[11].astype(np.int8)
+    if wall == Wall.upper:
+        velocity, walls = -velocity, np.int8(1) - walls
+        slopes = slopes * np.array([[1.0], [1.0], [-1.0], [-1.0]])
+    return Segment(tau + since, speed, time, velocity, acceleration, condition, error, slopes, ended, cause,
+                   code == PRESSED, walls)  # fmt: skip
 
 
 @dataclass(frozen=True, repr=False)
 class Ends(Result):
-    """The states after the last impact flown, and 0, or the status of the flight that ended an orbit before."""
+    """The states after the last impact flown, and 0, or the status of the flight that ended an orbit before.
+
+    Parameters
+    ----------
+    wall : int8, of the states of a model with two walls; None of others.
+    """
 
     tau: Any
     v: Any
     status: Any
+    wall: Any = None
 
     __repr__ = in_words
 
@@ -96,7 +111,13 @@ class Ends(Result):
 
 
 def iterate(
-    osc: Oscillator, tau: Any, v: Any, impacts: int, tolerance: float = EPSILON, horizon: float | None = None
+    osc: Oscillator,
+    tau: Any,
+    v: Any,
+    impacts: int,
+    tolerance: float = EPSILON,
+    horizon: float | None = None,
+    wall: Any = None,
 ) -> Ends:
     """G^impacts of states; an orbit that meets no further impact stays where it is.
 
@@ -105,7 +126,7 @@ def iterate(
     osc : the model. tau, v : states that broadcast. impacts : flown. A chatter whose rest is below the last bit of tau
         ends as `complete`, with v = 0.
     tolerance : relative error of a Taylor step; closed forms keep to roundings. horizon : of a flight, in place of the
-        default.
+        default. wall : of the states of a model with two walls, as for `first_hit`.
 
     Examples
     --------
@@ -113,27 +134,34 @@ def iterate(
     >>> ends.tau.tolist(), ends.v.tolist()
     ([1.75, 2.75], [0.125, 0.125])
     """
+    if wall is not None:
+        fly = partial(iterate, impacts=impacts, tolerance=tolerance, horizon=horizon)
+        return at_walls(fly, osc, wall, (tau, v))  # type: ignore[no-any-return]
     if many(tau, v):
         return in_blocks(partial(iterate, osc, impacts=impacts, tolerance=tolerance, horizon=horizon), tau, v)  # type: ignore[no-any-return]
     states = States.read(tau, v).in_period(osc)
     model = compiled_model(osc)
     if osc.plastic:
         times, speeds, codes = _from_rest(osc, states, impacts, tolerance)
-        parts = times + states.turns, speeds, codes
-        return Ends(*(column.reshape(states.shape)[()] for column in parts))
+        shaped = (column.reshape(states.shape)[()] for column in (times + states.turns, speeds, codes))
+        return Ends(*shaped)
     epsilon = EPSILON if model.linear else tolerance
     if epsilon > EPSILON or horizon is not None:
         longest = model.allowance.horizon if horizon is None else horizon
         model = allowed(osc, replace(model.allowance, epsilon=epsilon, horizon=longest))
-    times, speeds, codes = model.iterate(states.tau, states.v, impacts)
+    times, speeds, codes, sides = model.iterate(states.tau, states.v, impacts)
     if tolerance > EPSILON and (left := codes == Status.unresolved).any():
         # a graze that a coarse flight does not decide: one more impact, accurately
-        times[left], speeds[left], codes[left] = compiled_model(osc).iterate(times[left], speeds[left], 1)
+        accurate = compiled_model(osc).iterate(times[left], speeds[left], 1)
+        times[left], speeds[left], codes[left], sides[left] = accurate
     codes = np.where(codes == AT_REST, np.int8(Status.sticks), codes)
-    over = _completed(osc, times, speeds, codes)
-    codes[over], speeds[over] = Status.complete, 0.0
-    parts = times + states.turns, speeds, decoded(codes)[0]
-    return Ends(*(column.reshape(states.shape)[()] for column in parts))
+    for each, model_there in enumerate(model.walls):
+        at = np.flatnonzero(sides == each)
+        over = at[_completed(model_there, times[at], speeds[at], codes[at])]
+        codes[over], speeds[over] = Status.complete, 0.0
+    parts = times + states.turns, speeds, decoded(codes)[0], sides.astype(np.int8)
+    last = [column.reshape(states.shape)[()] for column in parts]
+    return Ends(*(last if len(model.walls) == 2 else last[:3]))
 
 
 def _from_rest(osc: Oscillator, states: States, impacts: int, tolerance: float) -> tuple[Array, Array, Array]:
@@ -168,19 +196,26 @@ def _completed(osc: Oscillator, tau: Array, v: Array, codes: Array) -> Array:
     return over
 
 
-def iterates(osc: Oscillator, tau: Any, v: Any, impacts: int, keep: bool) -> Ends:
+def iterates(osc: Oscillator, tau: Any, v: Any, impacts: int, keep: bool, wall: Any = None) -> Ends:
     """`iterate`, with the states after every impact along a first axis when they are kept."""
+    if osc.upper is not None and wall is None:
+        wall = Wall.lower
     if not keep:
-        ends = iterate(osc, tau, v, impacts)
-        return Ends(ends.tau, ends.v, status_array(ends.status))
-    states = States.read(tau, v).in_period(osc)
+        ends = iterate(osc, tau, v, impacts, wall=wall)
+        return Ends(ends.tau, ends.v, status_array(ends.status), ends.wall)
+    states = States.read(*np.broadcast_arrays(as_written("tau", tau), as_written("v", v), wall_codes(osc, wall))[:2])
+    states = states.in_period(osc)
     require_memory("iterates kept", (impacts + 1, *states.shape), 2 * LEAST)  # rows, and rows put together
-    rows = [Ends(states.tau, states.v, np.zeros(states.v.size, np.int8))]
+    walls = None if wall is None else np.broadcast_to(wall_codes(osc, wall), states.shape).ravel()
+    rows = [Ends(states.tau, states.v, np.zeros(states.v.size, np.int8), walls)]
     for _ in range(impacts):
         last = rows[-1]
-        ends = iterate(osc, last.tau, last.v, 1)
-        rows.append(Ends(ends.tau, ends.v, np.where(last.status != 0, last.status, ends.status)))
-    times, speeds = np.stack([row.tau for row in rows]), np.stack([row.v for row in rows])
-    times += states.turns
+        ends = iterate(osc, last.tau, last.v, 1, wall=last.wall)
+        rows.append(Ends(ends.tau, ends.v, np.where(last.status != 0, last.status, ends.status), ends.wall))
     shape = (impacts + 1, *states.shape)
-    return Ends(times.reshape(shape), speeds.reshape(shape), status_array(rows[-1].status.reshape(states.shape)))
+    times, speeds = (
+        np.stack(column).reshape(shape) for column in zip(*((row.tau, row.v) for row in rows), strict=True)
+    )
+    kept = None if walls is None else np.stack([row.wall for row in rows]).reshape(shape)
+    turns = np.broadcast_to(states.turns, states.tau.shape).reshape(states.shape)
+    return Ends(times + turns, speeds, status_array(rows[-1].status.reshape(states.shape)), kept)

@@ -21,7 +21,17 @@ SPARE = 40  # digits beyond 2 `digits`: half of the digits are lost where rho ha
 
 
 def rebound(osc: Oscillator, velocity: Array) -> Array:
-    """rho(velocity) for velocities <= 0; nan where it is not positive for a velocity that is not 0."""
+    """rho(velocity) for velocities <= 0, and that of the upper wall for velocities > 0; nan where it is not positive
+    for a velocity that is not 0.
+    """
+    if osc.upper is not None:
+        lower, upper = (_rebound_below(each, -np.abs(velocity)) for each in (osc, osc.mirrored))
+        return np.where(np.asarray(velocity) > 0, upper, lower)
+    return _rebound_below(osc, velocity)
+
+
+def _rebound_below(osc: Oscillator, velocity: Array) -> Array:
+    """rho(velocity) of the lower wall."""
     if not names_in(osc.restitution):
         return np.abs(as_float(osc.restitution) * velocity)
     with np.errstate(all="ignore"):
@@ -31,6 +41,8 @@ def rebound(osc: Oscillator, velocity: Array) -> Array:
 
 def rebound_in_digits(osc: Oscillator, velocity: Any, mp: Any) -> Any:
     """rho(velocity) at the precision of an mpmath context."""
+    if osc.upper is not None and velocity > 0:
+        osc, velocity = osc.mirrored, -velocity
     if not names_in(osc.restitution):
         return abs(as_mpf(osc.restitution, mp) * velocity)
     return mp.re(evaluate(osc.rho(), {"v": velocity}, Multiprecision(mp)))
@@ -42,7 +54,15 @@ def _slope_of_rho(osc: Oscillator) -> Any:
 
 
 def rebound_slope(osc: Oscillator, velocity: Any, ring: Any = DOUBLES) -> Any:
-    """rho'(velocity); at rest from the expansion of rho, for the formula of rho' may be 0/0 there."""
+    """The derivative of `rebound`; at rest from the expansion of rho, for the formula of rho' may be 0/0 there."""
+    if osc.upper is not None and np.any(np.asarray(velocity) > 0):
+        lower, upper = (_slope_below(each, -abs(velocity), ring) for each in (osc, osc.mirrored))
+        return np.where(np.asarray(velocity) > 0, -upper, lower)[()]
+    return _slope_below(osc, velocity, ring)
+
+
+def _slope_below(osc: Oscillator, velocity: Any, ring: Any) -> Any:
+    """rho'(velocity) of the lower wall."""
     if not names_in(osc.restitution):
         return -evaluate(osc.restitution, {}, ring) + 0 * velocity
     if osc.rho_at_rest() is None:

@@ -47,10 +47,11 @@ class Response(NamedTuple):
 
 
 def response(osc: Oscillator, tau: Array, v: Array, time: Array, velocity: Array) -> Response:
-    """The response of flights in doubles; entries that are no hits, velocity < 0, give nan."""
+    """The response of flights in doubles; entries that are no hits, velocity < 0, or > 0 at an upper wall, give nan."""
     parts = variations(osc, tau, v, time)
     with np.errstate(all="ignore"):
-        parts[~((velocity < 0) & np.isfinite(time))] = np.nan
+        hits = velocity < 0 if osc.upper is None else velocity != 0
+        parts[~(hits & np.isfinite(time))] = np.nan
     return _response(parts.T, velocity, _acceleration(osc, tau, time, velocity))
 
 
@@ -58,6 +59,9 @@ def response_of_one(osc: Oscillator, tau: float, v: float, time: float, velocity
     """`response` of one hit of a launch with v > 0, in floats."""
     forcing, force = in_floats_of(osc)
     parts = compiled_model(osc).one(VARIATIONS, tau, v, time)[1][:4]
+    if velocity > 0:  # at an upper wall
+        there = float(_acceleration(osc, *(np.array([number]) for number in (tau, time, velocity)))[0])
+        return _response(parts, velocity, there)
     at = (tau if osc.period is None else float(reduced(np.array([tau]), osc.period)[0])) + time
     ahead = forcing(at)
     there = ahead - force(velocity, at)
@@ -107,7 +111,7 @@ def _acceleration(osc: Oscillator, tau: Array, time: Array, velocity: Array) -> 
     """x'' at the hits."""
     start = tau if osc.period is None else reduced(tau, osc.period)
     with np.errstate(all="ignore"):
-        state = {"x": as_float(osc.clearance), "xdot": velocity, "t": start + time}
+        state = {"x": _places(osc, velocity), "xdot": velocity, "t": start + time}
         forcing = evaluate(osc.forcing(), state, DOUBLES) + 0 * velocity
         force = evaluate(osc.force(), state, DOUBLES)
         difference = np.asarray(forcing - force)
@@ -117,12 +121,19 @@ def _acceleration(osc: Oscillator, tau: Array, time: Array, velocity: Array) -> 
     return difference
 
 
+def _places(osc: Oscillator, velocity: Array) -> Any:
+    """x at hits with these velocities."""
+    lower = as_float(osc.clearance)
+    return lower if osc.upper is None else np.where(velocity > 0, as_float(osc.upper), lower)
+
+
 def _cancelled(osc: Oscillator, at: float, velocity: float) -> float:
     """x'' at a hit where g and f nearly cancel, from numbers that hold what doubles lose."""
     balls = Balls(256)
     speed, time = (balls.rational(Fraction(float(value))) for value in (velocity, at))
     with balls_at(balls.bits):
-        force = balls.evaluate(osc.force(), {"x": balls.evaluate(osc.clearance, {}), "xdot": speed, "t": time})
+        place = osc.clearance if osc.upper is None or velocity < 0 else osc.upper
+        force = balls.evaluate(osc.force(), {"x": balls.evaluate(place, {}), "xdot": speed, "t": time})
         return float((balls.evaluate(osc.forcing(), {"t": time}) - force).mid())
 
 
@@ -134,7 +145,7 @@ def precise(osc: Oscillator, tau: Any, v: Any, time: Any, velocity: Any, mp: Any
     p = [as_mpf(tree, mp) for tree in constants_of(osc, linear=False)]
     rows = [[mp.mpf(0)] * (order + 2) for _ in range(flow.rows + 5)]
     work, columns = Work(rows[0], rows[5:], rows[1]), Columns(*rows[2:5])
-    rules = Rules(mp.inf, LIMITS.steps, order, order, 8 * mp.eps, 0, 0, 0, 0, 0, 0)
+    rules = Rules(mp.inf, LIMITS.steps, order, order, 8 * mp.eps, 0, 0, 0, 0, 0, 0, mp.inf, 0)
     *parts, _ = space["derivatives_at"]([tau], v, time, p, rules, work, columns)
     ring = Multiprecision(mp)
     values = {"x": as_mpf(osc.clearance, mp), "xdot": velocity, "t": tau + time}

@@ -10,7 +10,7 @@ from singimpact.algebra.certified import Certified
 from singimpact.algebra.expressions import Expression
 from singimpact.oscillator.model import Oscillator
 from singimpact.result import Result, in_words, plain, value_in_words
-from singimpact.status import Cause, Status, status_array
+from singimpact.status import Cause, Status, Wall, status_array
 
 JUDGED = ("condition", "velocity_condition", "time_error", "velocity_error")
 """Fields that may be computed when they are first read: of a Taylor flow they take longer than the flight."""
@@ -73,6 +73,8 @@ class Flight(Result):
     notes : by index in the flat arrays, for unresolved flights: where the flight came to. With `digits`, for every
         flight that is not certified: why.
     certified : with `digits`, `CertifiedImpact` of each hit that is proved, None for each that is not; else None.
+    wall : int8, of a model with two walls: 1 where the upper one is hit or touched, else 0, see `status.Wall`; else
+        None. At the upper wall the velocity is >= 0.
 
     Notes
     -----
@@ -93,6 +95,7 @@ class Flight(Result):
     cause: Any = field(default=0, kw_only=True)
     notes: Mapping[int, str] = field(default_factory=dict, kw_only=True)
     certified: Any = field(default=None, kw_only=True)
+    wall: Any = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "status", status_array(self.status))
@@ -148,6 +151,8 @@ class Flight(Result):
         if not statuses.shape:
             names = [name for name in ("tau", "v", "flight_time", "velocity") if name in self.__dict__]
             numbers = [f"{name}={value_in_words(self.__dict__[name])}" for name in names]
+            if self.wall is not None:
+                numbers.insert(0, f"wall={Wall(int(self.wall)).name}")
             return f"{type(self).__name__}({', '.join(numbers)}, status={value_in_words(statuses, Status)})"
         ends = value_in_words(statuses, Status)
         return f"{type(self).__name__} of {statuses.size} states, shape {statuses.shape}: {ends}"
@@ -159,6 +164,8 @@ class Flight(Result):
         """
         names = [name for name in ("flight_time", "velocity", "tau", "v") if name in self.__dict__]
         values = {name: plain(getattr(self, name)) for name in [*names, "certified"] if getattr(self, name) is not None}
+        if self.wall is not None:
+            values["wall"] = plain(self.wall, "wall")
         words = {name: plain(getattr(self, name), name) for name in ("status", "cause")}
         return values | {name: word for name, word in words.items() if word is not None}
 

@@ -1,5 +1,7 @@
 """First hits of arrays of states, and the few that end in no plain hit: at rest, near a graze, escaped, given up."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache, partial
@@ -8,14 +10,15 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from singimpact.algebra.balls import Balls
-from singimpact.algebra.expressions import Expression, evaluate
+from singimpact.algebra.expressions import Expression, evaluate, subtract
 from singimpact.algebra.numbers import Array, constant
 from singimpact.algebra.precision import balls_at
 from singimpact.flights.causes import decoded, explained
 from singimpact.flights.compiled_model import CompiledModel
-from singimpact.flights.flat_numbers import EPSILON
+from singimpact.flights.flat_numbers import EPSILON, gap_of
 from singimpact.flights.flight_path import path
 from singimpact.flights.kernels.hits import CANCELS, NOT_REFINED
+from singimpact.flights.kernels.state import ACROSS
 from singimpact.flights.limits import LIMITS
 from singimpact.flights.no_return.averaged import stays_up
 from singimpact.flights.no_return.barrier import kept_up
@@ -46,12 +49,29 @@ class Fates:
     Parameters
     ----------
     status, cause : int8. rows : columns of hits, see `kernels.state`; of a flight without a hit the first four are
-        time, velocity (or x'), depth (or x - c) and bound.
+        time, velocity (or x'), depth (or x - c) and bound. Of a hit of an upper wall the velocity is > 0.
+    above : bool, whether a flight that comes near a wall comes near the upper one.
     """
 
     status: Array
     cause: Array
     rows: Array
+    above: Array
+
+    @staticmethod
+    def of(codes: Array, rows: Array) -> Fates:
+        """Flights as a kernel left them."""
+        return Fates(*decoded(codes), rows, codes >= ACROSS)
+
+    def decide(self, index: int, code: int, numbers: Any) -> None:
+        """The outcome of one flight: a code of the kernels, and the first four columns."""
+        self.status[index], self.cause[index], self.above[index] = code % ACROSS, Cause.decided, code >= ACROSS
+        self.rows[:4, index] = numbers
+
+    @property
+    def walls(self) -> Array:
+        """The wall of each hit, graze or near graze; 0, that of the launch, of other flights."""
+        return np.where(self.status == Status.hit, self.rows[1] > 0, self.above).astype(np.int8)
 
     @property
     def numbers(self) -> Array:
@@ -162,7 +182,7 @@ def decided(osc: Oscillator, model: CompiledModel, states: States, codes: Array,
     if lifted:
         removed = np.array([states.rest[index].order + 2 for index in lifted])
         codes[lifted], rows[:, lifted] = model.releases(model.near(states.tau[lifted]), removed)
-    fates = Fates(*decoded(codes), rows)
+    fates = Fates.of(codes, rows)
     for index, rest in states.rest.items():
         if rest.sign <= 0:
             fates.status[index] = Status.sticks
@@ -175,6 +195,8 @@ def plain(model: CompiledModel, states: States, codes: Array, rows: Array) -> Fl
     judge = None if model.linear else Judge(model, states.tau, states.v)
     judged = dict(zip(JUDGED, rows[2:6], strict=True)) if model.linear else {}
     fields = dict(zip(PLAIN, (*rows[:2], codes, np.zeros(codes.size, np.int8), {}), strict=True))
+    if len(model.walls) == 2:
+        fields["wall"] = (rows[1] > 0).astype(np.int8)
     return Flight.made(partial(_read_later, codes.size, judge), **fields, **judged)
 
 
@@ -205,7 +227,7 @@ def _refined(osc: Oscillator, model: CompiledModel, states: States, codes: Array
     for index in wanted:
         fates.status[index] = Status.hit
         exact = states.exact_tau(index), states.exact_v(index), constant("height", 0)
-        hit = refined_hit(osc, exact, float(fates.rows[0, index]))
+        hit = refined_hit(osc, exact, *fates.rows[:2, index].tolist())
         if hit is None and left:
             left -= 1
             settled = settle(osc, states, index, float(model.allowance.until(states.v[index])))
@@ -223,11 +245,14 @@ def escapes(osc: Oscillator, model: CompiledModel, states: States, fates: Fates)
     gone = np.flatnonzero(((fates.status == Status.no_return) | (fates.lost & ~singular)) & (numbers[:, 0] > 0))
     if gone.size:
         time, speed, position, _ = numbers[gone].T
-        proved = (
-            never_turns(osc, position, speed)
-            if model.form is None
-            else never_returns(osc, model.form, states.tau[gone], time, position, speed)
-        )
+        proved = np.ones(gone.size, dtype=bool)
+        for wall, each in enumerate(model.walls):
+            height, u = (position, speed) if not wall else (gap_of(osc)[0] - position, -speed)
+            proved &= (
+                never_turns(each, height, u)
+                if model.form is None
+                else never_returns(each, linear_form(each) or model.form, states.tau[gone], time, height, u)
+            )
         fates.status[gone[proved]], fates.cause[gone[proved]] = Status.escaped, Cause.decided
 
 
@@ -239,9 +264,8 @@ def _settled(osc: Oscillator, model: CompiledModel, states: States, fates: Fates
     for index in open_ones:
         settled = settle(osc, states, int(index), float(model.allowance.until(states.v[index])))
         if settled is not None:
-            fates.status[index], fates.rows[:4, index] = settled
+            fates.decide(int(index), *settled)
             fates.rows[4:, index] = np.nan
-            fates.cause[index] = Cause.decided
     return open_ones
 
 
@@ -266,6 +290,8 @@ def result(osc: Oscillator, states: States, fates: Fates, judge: Judge | None, s
         "cause": fates.cause,
         "notes": notes,
     }
+    if osc.upper is not None:
+        fields["wall"] = fates.walls
     if judge is not None:
         return Flight.made(judge, **fields)
     judged = np.where(hit, rows[2:6], np.nan)
@@ -339,28 +365,32 @@ def _system(osc: Oscillator, bits: int) -> LinearSystem:
         return LinearSystem(flint.arb_mat(rows), tuple(waves))
 
 
-def refined_hit(osc: Oscillator, start: tuple[Expression, ...], time: float) -> list[float] | None:
+def refined_hit(osc: Oscillator, start: tuple[Expression, ...], time: float, velocity: float) -> list[float] | None:
     """Flight time and velocity of a hit of a linear model, correctly rounded up to a unit.
 
     Which root is the first has been decided; here it is only placed. None where balls do not confirm it.
 
     Parameters
     ----------
-    start : t, x' and x - c at the launch.
+    start : t, x' and x - c at the launch. time, velocity : nearly those of the hit; at an upper wall the velocity is
+        > 0.
     """
     balls = Balls(LIMITS.refine_bits)
     system = _system(osc, balls.bits)
+    place = constant("height", 0) if osc.upper is None or velocity < 0 else subtract(osc.upper, osc.clearance)
     with balls_at(balls.bits):
         launch = tuple(evaluate(tree, {}, balls) for tree in start)
         try:
-            hit = _halley(system, launch, balls.rational(Fraction(time)))
+            hit = _halley(system, launch, balls.rational(Fraction(time)), evaluate(place, {}, balls))
         except (ArithmeticError, ValueError, TypeError):  # a ball that left the domain of log or a root
             return None
         return None if hit is None else [float(ball.mid()) for ball in hit]
 
 
-def _halley(system: LinearSystem, launch: tuple[Any, ...], time: Any) -> tuple[Any, Any] | None:
-    """Time and velocity of the hit next to a time, one step of Halley's method away; None when no step is small."""
+def _halley(system: LinearSystem, launch: tuple[Any, ...], time: Any, place: Any) -> tuple[Any, Any] | None:
+    """Time and velocity next to a time at which x - c = place, one step of Halley's method away; None when no step is
+    small.
+    """
     import flint
 
     tau, v, at_first = launch
@@ -368,7 +398,7 @@ def _halley(system: LinearSystem, launch: tuple[Any, ...], time: Any) -> tuple[A
     start = flint.arb_mat([[at_first], [v], [1], *([value] for sine, cosine in angles for value in (cosine, sine))])
     for _ in range(STEPS):
         state = (system.matrix * time).exp() * start
-        height, speed = state[0, 0], state[1, 0]
+        height, speed = state[0, 0] - place, state[1, 0]
         change = system.matrix * state
         curve, jerk = change[1, 0], (system.matrix * change)[1, 0]
         if not abs(height) < abs(speed * time) * NEAR.numerator / NEAR.denominator:

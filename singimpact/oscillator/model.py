@@ -3,13 +3,22 @@
 import tomllib
 from collections.abc import Collection, Mapping
 from fractions import Fraction
-from functools import lru_cache
+from functools import lru_cache, partial
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Self
 
-from singimpact.algebra.expressions import FUNCTIONS, Call, Expression, names_in, substitute, walk
-from singimpact.algebra.numbers import constant, tree_of
+from singimpact.algebra.expressions import (
+    FUNCTIONS,
+    Call,
+    Expression,
+    Name,
+    names_in,
+    negate,
+    substitute,
+    walk,
+)
+from singimpact.algebra.numbers import compare, constant, tree_of
 from singimpact.algebra.puiseux import Puiseux
 from singimpact.algebra.rings import to_sympy
 from singimpact.inputs import InputError, checked_methods, refuse, require_known, shown, unknown
@@ -18,13 +27,13 @@ from singimpact.oscillator.period import checked_period, moving_in_time, period_
 from singimpact.store import read_bounded
 
 STATE = ("x", "xdot")
-FIELDS = ("f", "g", "clearance", "restitution", "parameters", "period")
+FIELDS = ("f", "g", "clearance", "restitution", "parameters", "period", "upper", "upper_restitution")
 RESERVED = {*STATE, "t", "v", "pi", *FUNCTIONS}
 
 
-@checked_methods
+@partial(checked_methods, two_walls=True)
 class Oscillator:
-    """x'' + f(x, x', t) = g(t), x >= clearance, v -> -restitution v, or v -> rho(v).
+    """x'' + f(x, x', t) = g(t), x >= clearance, v -> -restitution v, or v -> rho(v); with `upper`, x <= upper too.
 
     Parameters
     ----------
@@ -37,6 +46,9 @@ class Oscillator:
     parameters : name -> number.
     period : number, optional; a common period of f and g in t. Computed where t enters through sines and cosines of
         commensurate rates; needed only where a task asks for one.
+    upper : number above the clearance, the place of a second wall, x <= upper; None for one wall.
+    upper_restitution : of the upper wall; without it that of the lower one. An expression rho takes the velocity
+        towards the wall as v < 0 too: it is the law of the model with x -> -x, see `mirrored`.
 
     Raises
     ------
@@ -53,7 +65,7 @@ class Oscillator:
     Oscillator(f='x', g='cos(2*t)', clearance='0.3', restitution='0.5')
     """
 
-    __slots__ = ("_period", "_texts", "clearance", "f", "g", "parameters", "restitution")
+    __slots__ = ("_period", "_texts", "clearance", "f", "g", "parameters", "restitution", "upper", "upper_restitution")
 
     def __init__(
         self,
@@ -63,17 +75,20 @@ class Oscillator:
         restitution: Any,
         parameters: Mapping[str, Any] | None = None,
         period: Any = None,
+        upper: Any = None,
+        upper_restitution: Any = None,
     ) -> None:
         values = _parameters(parameters or {})
         self.parameters: Mapping[str, Expression] = MappingProxyType(values)
         self.f = tree_of(f, (*STATE, "t", *values), "f")
         self.g = tree_of(g, ("t", *values), "g")
         self.restitution = rebound.read(restitution, values)
-        used = names_in(self.f) | names_in(self.g) | names_in(self.restitution)
+        self.clearance = constant("clearance", clearance)
+        self.upper, self.upper_restitution = self._above(upper, upper_restitution, values)
+        used = names_in(self.f) | names_in(self.g) | names_in(self.restitution) | names_in(self.upper_restitution)
         for name in values:
             if name not in used:
                 raise unknown("parameter", name, sorted((used | {name}) - {*STATE, "t", "v", name}))
-        self.clearance = constant("clearance", clearance)
         moving = {name: substitute(tree, values) for name, tree in moving_in_time(self.f, self.g).items()}
         self._period = period_of(*moving.values())
         if period is not None:
@@ -85,7 +100,30 @@ class Oscillator:
             str(self.restitution),
             tuple((name, str(value)) for name, value in sorted(values.items())),
             str(self._period) if period is not None else None,
+            None if self.upper is None else str(self.upper),
+            None if upper_restitution is None else str(self.upper_restitution),
         )
+
+    def _above(
+        self, upper: Any, restitution: Any, parameters: Mapping[str, Expression]
+    ) -> tuple[Expression | None, Expression]:
+        """The place of the upper wall, None without one, and its restitution."""
+        if upper is None:
+            if restitution is not None:
+                raise refuse("upper_restitution", restitution, "upper= too, the place of the wall that it is of")
+            return None, self.restitution
+        place = constant("upper", upper)
+        if compare(place, self.clearance) <= 0:
+            raise refuse("upper", upper, f"a number above the clearance {self.clearance}")
+        law = (
+            self.restitution
+            if restitution is None
+            else rebound.read(restitution, dict(parameters), "upper_restitution")
+        )
+        for name, each in (("restitution", self.restitution), ("upper_restitution", law)):
+            if str(each) == "0":
+                raise refuse(name, 0, "a number above 0 beside upper=: two walls need rebounds")
+        return place, law
 
     def __setattr__(self, name: str, value: Any) -> None:
         if hasattr(self, "_texts"):  # the last field that is set
@@ -110,6 +148,37 @@ class Oscillator:
     def autonomous(self) -> bool:
         """Whether t occurs neither in f nor in g: the model has no clock."""
         return not self.parametric and "t" not in names_in(self.g)
+
+    @property
+    def mirrored(self) -> Self:
+        """The model with x -> -x, whose lower wall is the upper one of this: its local theory is that of the upper wall.
+
+        Examples
+        --------
+        >>> Oscillator("x + x**2", "cos(2*t)", "-0.5", 1, upper="0.7", upper_restitution="0.8").mirrored
+        Oscillator(f='-(-x + (-x)**2)', g='-cos(2*t)', clearance='-0.7', restitution='0.8', upper='0.5', upper_restitution='1')
+        """  # noqa: E501
+        return _mirrored(self)  # type: ignore[no-any-return]
+
+    def one_wall(self, wall: Any = "lower") -> Self:
+        """The model with the lower wall alone, or with the upper one alone and x -> -x.
+
+        Parameters
+        ----------
+        wall : "lower" or "upper".
+
+        Examples
+        --------
+        >>> Oscillator("x", "cos(2*t)", "-0.5", "0.6", upper="0.7").one_wall("upper")
+        Oscillator(f='x', g='-cos(2*t)', clearance='-0.7', restitution='0.6')
+        """
+        if self.upper is None and wall == "lower":
+            return self
+        if self.upper is None or wall not in ("lower", "upper"):
+            raise refuse(
+                "wall", wall, "'lower' or 'upper'" if self.upper is not None else "'lower': this model has one"
+            )
+        return (self if wall == "lower" else self.mirrored).replace(upper=None, upper_restitution=None)
 
     def force(self, keep: Collection[str] = ()) -> Expression:
         """f with the parameters' values put in; those in `keep` stay letters."""
@@ -175,6 +244,8 @@ class Oscillator:
             "restitution": self.restitution,
         }
         fields["period"] = self._period if self._texts[5] is not None else None
+        fields["upper"] = self.upper
+        fields["upper_restitution"] = self.upper_restitution if self._texts[7] is not None else None
         parameters: dict[str, Any] = dict(self.parameters)
         for name, value in changes.items():
             if name not in fields and name not in parameters:
@@ -184,11 +255,12 @@ class Oscillator:
 
     def to_dict(self) -> dict[str, Any]:
         """The fields as text; `type(self)(**osc.to_dict())` is an equal model."""
-        f, g, clearance, restitution, parameters, period = self._texts
+        f, g, clearance, restitution, parameters, *others = self._texts
         fields: dict[str, Any] = {"f": f, "g": g, "clearance": clearance, "restitution": restitution}
         if parameters:
             fields["parameters"] = dict(parameters)
-        return fields | ({"period": period} if period is not None else {})
+        named = zip(("period", "upper", "upper_restitution"), others, strict=True)
+        return fields | {name: text for name, text in named if text is not None}
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Oscillator) and self._texts == other._texts
@@ -203,7 +275,7 @@ class Oscillator:
 
     def _repr_latex_(self) -> str:
 
-        return f"${equation(self.f, self.g, self.clearance, self.restitution, self.parameters)}$"
+        return f"${equation(self)}$"
 
     def __reduce__(self) -> tuple[Any, ...]:
         return (_rebuilt, (type(self), self.to_dict()))
@@ -214,6 +286,23 @@ def _with_values(osc: Oscillator, field: str, keep: frozenset[str]) -> Expressio
     """A field of a model with the values of its parameters put in, but of some."""
     tree = rebound.rho_of(osc.restitution) if field == "restitution" else getattr(osc, field)
     return substitute(tree, {name: value for name, value in osc.parameters.items() if name not in keep})
+
+
+@lru_cache(maxsize=256)
+def _mirrored(osc: Oscillator) -> Any:
+    if osc.upper is None:
+        raise refuse("upper", None, "a model with two walls: x -> -x puts the wall of this one above")
+    turned: dict[str, Expression] = {name: negate(Name(name)) for name in STATE}
+    return type(osc)(
+        negate(substitute(osc.f, turned)),
+        negate(osc.g),
+        negate(osc.upper),
+        osc.upper_restitution,
+        osc.parameters,
+        osc.period if osc._texts[5] is not None else None,
+        negate(osc.clearance),
+        osc.restitution if osc._texts[7] is not None else None,
+    )
 
 
 def _rebuilt(kind: type[Oscillator], fields: dict[str, Any]) -> Oscillator:
@@ -326,22 +415,23 @@ def to_toml(fields: dict[str, Any]) -> str:
 # The model as the reader of a paper would write it, in LaTeX.
 
 
-def equation(
-    f: Expression, g: Expression, clearance: Expression, restitution: Expression, parameters: Mapping[str, Expression]
-) -> str:
-    """x'' + f = g, the wall, the rebound, and the numbers that the letters stand for.
+def equation(osc: Oscillator) -> str:
+    """x'' + f = g, the walls, the rebound, and the numbers that the letters stand for.
 
     Examples
     --------
-    >>> from singimpact.oscillator.model import Oscillator
-    >>> osc = Oscillator("x + x**3", "t*omega", 1, "1/2", {"omega": 2})
-    >>> print(equation(osc.f, osc.g, osc.clearance, osc.restitution, osc.parameters))
+    >>> print(equation(Oscillator("x + x**3", "t*omega", 1, "1/2", {"omega": 2})))
     \\ddot x + x^{3} + x = \\omega t,\\quad x \\ge 1,\\quad v \\mapsto - \\frac{v}{2},\\quad \\omega = 2
     """
-    force = "" if to_sympy(f) == 0 else f" + {latex(f)}".replace("+ -", "-")
-    parts = [rf"\ddot x{force} = {latex(g)}", rf"x \ge {latex(clearance)}"]
-    parts.append(rf"v \mapsto {latex(rebound.rho_of(restitution))}")
-    parts += [f"{latex_name(name)} = {latex(value)}" for name, value in parameters.items()]
+    force = "" if to_sympy(osc.f) == 0 else f" + {latex(osc.f)}".replace("+ -", "-")
+    parts = [rf"\ddot x{force} = {latex(osc.g)}", rf"x \ge {latex(osc.clearance)}"]
+    parts.append(rf"v \mapsto {latex(rebound.rho_of(osc.restitution))}")
+    if osc.upper is not None:
+        parts[1] = rf"{latex(osc.clearance)} \le x \le {latex(osc.upper)}"
+        if osc.upper_restitution != osc.restitution:
+            above = substitute(negate(rebound.rho_of(osc.upper_restitution)), {"v": negate(Name("v"))})
+            parts[2] += rf"\text{{ below}},\ {latex(above)}\text{{ above}}"
+    parts += [f"{latex_name(name)} = {latex(value)}" for name, value in osc.parameters.items()]
     return r",\quad ".join(parts)
 
 

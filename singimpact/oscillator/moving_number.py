@@ -10,6 +10,8 @@ from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.period import common_period, moving_in_time
 
 CLEARANCE, RESTITUTION = "clearance", "restitution"
+UPPER = ("upper", "upper_restitution")
+"""Numbers of the second wall."""
 LINEAR = {"amplitude": 1, "damping": 0, "stiffness": 1, "phase": 0}
 """Numbers of `si.linear` that a model leaves out at these values."""
 
@@ -19,8 +21,9 @@ def with_number(osc: Oscillator, name: str) -> Oscillator:
 
     Parameters
     ----------
-    name : "clearance", "restitution", a parameter; "amplitude" (a factor of g) or "damping" (a term damping*xdot in f)
-        of any model; "stiffness" or "phase" of one with the term x in f or the wave cos(rate*t) for g.
+    name : "clearance", "restitution" (of two walls "upper", "upper_restitution" too), a parameter; "amplitude" (a
+        factor of g) or "damping" (a term damping*xdot in f) of any model; "stiffness" or "phase" of one with the term x
+        in f or the wave cos(rate*t) for g.
 
     Raises
     ------
@@ -35,10 +38,11 @@ def with_number(osc: Oscillator, name: str) -> Oscillator:
         raise InputError(
             "over = 'restitution': the restitution of this model is a law in v; give one of its parameters"
         )
-    if name in (CLEARANCE, RESTITUTION) or name in osc.parameters:
+    own = [CLEARANCE, RESTITUTION, *(UPPER if osc.upper is not None else ()), *osc.parameters]
+    if name in own:
         return osc
     if name not in LINEAR:
-        error = unknown("number of the model", str(name), [CLEARANCE, RESTITUTION, *osc.parameters, *LINEAR])
+        error = unknown("number of the model", str(name), [*own, *LINEAR])
         raise InputError(
             f"{error}; a number in f or g has a name if it is a parameter, cos({name}*t) with {{'{name}': 2}}"
         )
@@ -51,8 +55,8 @@ def with_number(osc: Oscillator, name: str) -> Oscillator:
         f = add(f, multiply(add(letter, number(-1)), Name("x")))
     else:
         g = _shifted(g, letter)
-    fields: dict[str, Any] = {"f": f, "g": g, "clearance": osc.clearance, "restitution": osc.restitution}
-    return type(osc)(**fields, parameters={**osc.parameters, name: LINEAR[name]})
+    fields: dict[str, Any] = {**osc.to_dict(), "f": f, "g": g}
+    return type(osc)(**{**fields, "parameters": {**osc.parameters, name: LINEAR[name]}})
 
 
 def value_of(osc: Oscillator, name: str) -> float:
@@ -64,6 +68,8 @@ def value_of(osc: Oscillator, name: str) -> float:
     2.0
     """
     fields = {CLEARANCE: osc.clearance, RESTITUTION: osc.restitution, **osc.parameters}
+    if osc.upper is not None:
+        fields |= dict(zip(UPPER, (osc.upper, osc.upper_restitution), strict=True))
     return as_float(fields[name]) if name in fields else float("nan")
 
 

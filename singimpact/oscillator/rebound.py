@@ -17,8 +17,12 @@ ACCEPTED = (
 TERMS = (6, 24, 2)
 
 
-def read(value: Any, parameters: dict[str, Expression]) -> Expression:
+def read(value: Any, parameters: dict[str, Expression], name: str = "restitution") -> Expression:
     """A restitution as a constant tree or a tree in v, checked at v = 0.
+
+    Parameters
+    ----------
+    name : of the argument.
 
     Examples
     --------
@@ -26,16 +30,16 @@ def read(value: Any, parameters: dict[str, Expression]) -> Expression:
     -0.8*v + b*v**2
     """
     try:
-        tree = tree_of(value, ("v", *parameters), "restitution")
+        tree = tree_of(value, ("v", *parameters), name)
         if "v" not in names_in(tree):
-            tree = constant("restitution", value)
+            tree = constant(name, value)
     except InputError as error:
         if callable(value) or (isinstance(value, str) and "v" in value):
             raise
-        raise refuse("restitution", value, ACCEPTED) from error
+        raise refuse(name, value, ACCEPTED) from error
     good = _good(substitute(tree, parameters)) if "v" in names_in(tree) else compare(tree, 0) >= 0 >= compare(tree, 1)
     if not good:
-        raise refuse("restitution", value, ACCEPTED)
+        raise refuse(name, value, ACCEPTED)
     return tree
 
 

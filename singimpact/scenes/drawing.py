@@ -23,7 +23,7 @@ from singimpact.dynamics.bifurcation_diagram import Bifurcation
 from singimpact.dynamics.orbit import Orbit
 from singimpact.dynamics.release_map import ReleaseMap
 from singimpact.dynamics.sampling import Section
-from singimpact.inputs import InputError, checked_keywords, refuse
+from singimpact.inputs import InputError, checked_keywords, refuse, takes_two_walls
 from singimpact.scenes.basins_picture import draw_basins, draw_both_sides
 from singimpact.scenes.border_picture import draw_border
 from singimpact.scenes.branch_picture import (
@@ -54,6 +54,7 @@ LETTERS = {"tau": r"time $\tau$", "t": "flight time $t$", "v": "velocity $v$"}
 
 
 @checked_keywords
+@takes_two_walls
 def plot(
     thing: Any, ax: Any = None, *, height: str = "v", sheet: bool = False, dark: bool = False, **style: object
 ) -> Any:

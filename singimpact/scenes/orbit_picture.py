@@ -18,7 +18,7 @@ from singimpact.dynamics.orbit import Orbit, orbit as flown
 from singimpact.dynamics.release_map import ReleaseMap
 from singimpact.dynamics.sampling import Section
 from singimpact.flights.flight_path import path
-from singimpact.inputs import InputError, checked_keywords, refuse, whole
+from singimpact.inputs import InputError, checked_keywords, refuse, takes_two_walls, whole
 from singimpact.scenes.label_places import legend_below, legend_entries
 from singimpact.scenes.style import BLACK, BLUE, GREY, HATCH, SHORT_DASHES, VERMILLION, WALL, WHITE
 from singimpact.store import written
@@ -56,14 +56,25 @@ def draw_orbit(orbit: Orbit, axes: Any, since: float | None = None) -> Any:
     times, places = _curve(orbit, (begin, end))
     axes.plot(times, places, color=BLUE, linewidth=1.1, label="flight $x(t)$", zorder=3)
     axes.axhline(clearance, color=GREY, linewidth=0.8, label="wall $x = c$", zorder=1)
-    _marks(orbit, axes, clearance, begin)
-    _rests(orbit, axes, clearance, (begin, end), 4.0)
+    _marks(orbit, axes, begin)
+    _rests(orbit, axes, orbit.places, (begin, end), 4.0)
     axes.set(xlabel="time $t$", ylabel="displacement $x$", xlim=(begin, end))
-    high = axes.get_ylim()[1]
-    axes.set_ylim(clearance - 0.12 * (high - clearance), high)
-    axes.axhspan(axes.get_ylim()[0], clearance, facecolor=WALL, hatch="////", edgecolor=HATCH, linewidth=0, zorder=0)
+    top = axes.get_ylim()[1] if orbit.oscillator.upper is None else as_float(orbit.oscillator.upper)
+    margin = 0.12 * (top - clearance)
+    axes.set_ylim(clearance - margin, top if orbit.oscillator.upper is None else top + margin)
+    _walls(orbit, axes)
     axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False, fontsize="small")
     return axes
+
+
+def _walls(orbit: Orbit, axes: Any) -> None:
+    """Hatched areas behind the walls."""
+    low, high = axes.get_ylim()
+    behind = [(low, as_float(orbit.oscillator.clearance))]
+    if orbit.oscillator.upper is not None:
+        behind.append((as_float(orbit.oscillator.upper), high))
+    for begin, end in behind:
+        axes.axhspan(begin, end, facecolor=WALL, hatch="////", edgecolor=HATCH, linewidth=0, zorder=0)
 
 
 def draw_periodic(orbit: PeriodicOrbit, axes: Any) -> Any:
@@ -71,7 +82,8 @@ def draw_periodic(orbit: PeriodicOrbit, axes: Any) -> Any:
     if orbit.kind == "free" or not orbit.visible:
         raise refuse("orbit to plot", orbit, "a periodic orbit with impacts that is visible")
     impacts = IMPACTS if orbit.kind == "chatter" else int(orbit.n)
-    return draw_orbit(flown(orbit.oscillator, orbit.tau[0], orbit.v[0], impacts), axes)
+    wall = None if orbit.wall is None else int(orbit.wall[0])
+    return draw_orbit(flown(orbit.oscillator, orbit.tau[0], orbit.v[0], impacts, wall=wall), axes)
 
 
 def draw_section(section: Section, axes: Any) -> Any:
@@ -115,13 +127,13 @@ def _curve(orbit: Orbit, ends: tuple[float, float]) -> tuple[Any, Any]:
         count = max(STYLE.fewest, int(STYLE.points * (stop - start) / (ends[1] - ends[0])))
         inside = np.linspace(0.0, stop - start, count)
         times += [start + inside, [np.nan]]
-        off_wall = orbit.height > 0 and start == orbit.tau[0]
+        off_wall = (orbit.height > 0 and start == orbit.tau[0]) or orbit.wall is not None
         flight = orbit.sample(start + inside) if off_wall else path(orbit.oscillator, start, speed[start], inside)
         places += [flight.x, [np.nan]]
     return (np.concatenate(times), np.concatenate(places)) if times else ([], [])
 
 
-def _marks(orbit: Orbit, axes: Any, clearance: float, begin: float) -> None:
+def _marks(orbit: Orbit, axes: Any, begin: float) -> None:
     looks = {
         "impact": ("o", "impact", WHITE),
         "graze": ("^", "graze", WHITE),
@@ -129,13 +141,14 @@ def _marks(orbit: Orbit, axes: Any, clearance: float, begin: float) -> None:
         "release": (">", "lifts off", VERMILLION),
     }
     for kind, (marker, label, face) in looks.items():
-        times = orbit.tau[(orbit.kind == kind) & (orbit.tau >= begin)]
+        chosen = (orbit.kind == kind) & (orbit.tau >= begin)
+        times = orbit.tau[chosen]
         if not times.size:
             continue
         small = kind == "impact" and times.size > STYLE.many
         axes.plot(
             times,
-            np.full(times.size, clearance),
+            orbit.places[chosen],
             linestyle="none",
             marker=marker,
             label=label,
@@ -148,14 +161,14 @@ def _marks(orbit: Orbit, axes: Any, clearance: float, begin: float) -> None:
         )
 
 
-def _rests(orbit: Orbit, axes: Any, height: float, ends: tuple[float, float], width: float) -> None:
-    """Bars at a height while the mass is at rest."""
-    times = [(start, min(stop, ends[1])) for kind, start, stop in orbit.phases if kind == "sticking" and stop > ends[0]]
-    for n, rest in enumerate(times):
-        label = None if n else "at rest on the wall"
-        axes.plot(
-            rest, (height, height), color=VERMILLION, linewidth=width, label=label, solid_capstyle="butt", zorder=4
-        )
+def _rests(orbit: Orbit, axes: Any, heights: Any, ends: tuple[float, float], width: float) -> None:
+    """Bars while the mass is at rest, at the height of the event before."""
+    label: str | None = "at rest on the wall"
+    for (kind, start, stop), height in zip(orbit.phases, heights.tolist(), strict=False):
+        if kind == "sticking" and stop > ends[0]:
+            rest, level = (start, min(stop, ends[1])), (height, height)
+            axes.plot(rest, level, color=VERMILLION, linewidth=width, label=label, solid_capstyle="butt", zorder=4)
+            label = None
 
 
 # The sheet: x(t) of the last periods, their phase portrait, all velocities after impacts, and the first chatter.
@@ -203,8 +216,8 @@ def _since(orbit: Orbit) -> float:
 
 
 def _portrait(orbit: Orbit, axes: Any, since: float) -> None:
-    """x and x' of the last part; impacts are dashed lines along the wall."""
-    wall, end = as_float(orbit.oscillator.clearance), shown_end(orbit)
+    """x and x' of the last part; impacts are dashed lines along the walls."""
+    end = shown_end(orbit)
     for kind, start, stop in orbit.phases:
         if kind not in ("flight", "no_return") or stop <= since or start >= end:
             continue
@@ -216,10 +229,12 @@ def _portrait(orbit: Orbit, axes: Any, since: float) -> None:
     hits = (orbit.kind == "impact") & (orbit.tau >= since)
     if hits.any():
         before = orbit.sample(np.nextafter(orbit.tau[hits], -np.inf)).xdot
-        jumps = np.stack([before, orbit.v[hits], np.full(before.size, np.nan)], axis=1).ravel()
-        wide = np.full(jumps.size, wall)
+        after = orbit.v[hits] if orbit.wall is None else (1 - 2 * orbit.wall[hits]) * orbit.v[hits]
+        jumps = np.stack([before, after, np.full(before.size, np.nan)], axis=1).ravel()
+        wide = np.repeat(orbit.places[hits], 3)
         axes.plot(wide, jumps, color=VERMILLION, linewidth=1.4, linestyle=SHORT_DASHES, label="impact", zorder=4)
-    axes.axvline(wall, color=GREY, linewidth=0.8)
+    for wall in {as_float(orbit.oscillator.clearance), float(orbit.places.max())}:
+        axes.axvline(wall, color=GREY, linewidth=0.8)
     axes.set(xlabel="displacement $x$", ylabel=r"velocity $\dot x$")
     axes.set_title("phase portrait", fontsize="medium")
     if hits.any():
@@ -243,7 +258,7 @@ def _velocities(orbit: Orbit, axes: Any, since: float | None) -> None:
     )
     end = shown_end(orbit)
     low = float(speeds.min()) / 3 if hits.any() else LEAST
-    _rests(orbit, axes, low, (float(orbit.tau[0]), end), 5.0)
+    _rests(orbit, axes, np.full(len(orbit.phases), low), (float(orbit.tau[0]), end), 5.0)
     if since is not None:
         axes.axvspan(since, end, color=WALL, zorder=0, label="part shown above")
     axes.set(xlabel="time $t$", ylabel="velocity $v$ after an impact", xlim=(orbit.tau[0], end))
@@ -261,13 +276,17 @@ def _first_chatter(orbit: Orbit) -> Array:
 
 
 def _hops(orbit: Orbit, axes: Any, times: Array) -> None:
-    """x - c during a chatter, on logarithmic axes: its hops are about equally wide there."""
+    """The distance from the wall during a chatter, on logarithmic axes: its hops are about equally wide there."""
     left = np.geomspace(times[-1] - times[0], times[-1] - times[-2], SAMPLES)[1:-1]
-    heights = orbit.sample(times[-1] - left).x - as_float(orbit.oscillator.clearance)
+    heights = np.abs(orbit.sample(times[-1] - left).x - orbit.places[orbit.tau == times[-1]][0])
     axes.plot(left, heights, color=BLUE, linewidth=0.9)
     least = heights[left < times[-1] - times[-3]].max() / 10  # below the top of the last hop
     axes.set(xscale="log", xlim=(left[0], left[-1]), xlabel="time before its end")
-    axes.set(yscale="log", ylim=(least, 2 * heights.max()), ylabel="displacement $x - c$")
+    axes.set(
+        yscale="log",
+        ylim=(least, 2 * heights.max()),
+        ylabel="displacement $x - c$" if orbit.wall is None else "distance from the wall",
+    )
     axes.set_title(f"first chatter, complete at t = {times[-1]:.6g}", fontsize="medium")
 
 
@@ -348,6 +367,7 @@ class OrbitAnimation:
 
 
 @checked_keywords
+@takes_two_walls
 def animate(orbit: Orbit, between: tuple[float, float] | None = None, frames: int = 300) -> OrbitAnimation:
     """The bouncing mass of an orbit beside its x(t).
 
@@ -370,7 +390,7 @@ def animate(orbit: Orbit, between: tuple[float, float] | None = None, frames: in
     if not first <= begin < end <= last:
         raise refuse("between", between, f"two times from {first:.6g} to {last:.6g}")
     times = np.linspace(begin, end, whole("frames", frames, 2, 10_000))
-    heights, wall = orbit.sample(times).x, as_float(orbit.oscillator.clearance)
+    heights = orbit.sample(times).x
     figure = Figure(figsize=(7.2, 3.2), dpi=80, layout="constrained")
     still, moving = figure.subplots(1, 2, sharey=True, width_ratios=(1, 4))
     draw_orbit(orbit, moving, since=begin).get_legend().remove()
@@ -378,7 +398,7 @@ def animate(orbit: Orbit, between: tuple[float, float] | None = None, frames: in
     for line in moving.lines:
         line.set_clip_on(True)  # marks of impacts that are not among the pictures
     still.set(xlim=(-1, 1), xticks=[], ylabel="displacement $x$")
-    still.axhspan(still.get_ylim()[0], wall, facecolor=WALL, hatch="////", edgecolor=HATCH, linewidth=0)
+    _walls(orbit, still)
     (mass,) = still.plot([0], [heights[0]], marker=BLOCK, color=BLUE, markersize=32)
     (point,) = moving.plot([begin], [heights[0]], "o", color=VERMILLION, markersize=6, zorder=6)
 

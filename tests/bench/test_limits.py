@@ -25,7 +25,7 @@ def test_a_ratio_that_has_grown_by_half_is_over(monkeypatch, tmp_path):
     assert limit_rows.over([replace(ROW, group="map")]) == []
 
 
-def test_launches_off_the_wall_cost_two_first_hits_at_most(monkeypatch, tmp_path):
+def test_launches_and_flights_between_walls_cost_few_first_hits(monkeypatch, tmp_path):
     monkeypatch.setattr(limit_rows, "STORED", tmp_path / "limits.json")
     hit, launch = (
         replace(ROW, method=f"singimpact, {name}", setting="linear, array") for name in ("first_hit", "launch")
@@ -34,9 +34,13 @@ def test_launches_off_the_wall_cost_two_first_hits_at_most(monkeypatch, tmp_path
     limit_rows.store([hit, slow])
     assert limit_rows.over([hit, slow]) == ["arrays: launch, linear, array: 2.03 first hits, at most 2"]
     assert limit_rows.over([hit, replace(launch, spread=(5.7, 6.1))]) == []
+    between = replace(slow, method="singimpact, between walls", spread=(4.6, 6.1))
+    limit_rows.store([hit, between])
+    assert limit_rows.over([hit, between]) == ["arrays: between walls, linear, array: 1.59 first hits, at most 1.5"]
     keys = json.loads((limit_rows.Path(limit_rows.__file__).parents[1] / "data" / "limits.json").read_text())
     for case in ("arrays: {}, linear, array", "arrays: {}, Duffing, array", "calls: {}, linear, one state"):
-        assert keys[case.format("launch")] <= limit_rows.OFF_WALL * keys[case.format("first_hit")]
+        for name, most in limit_rows.BESIDE.items():
+            assert keys[case.format(name)] <= most * keys[case.format("first_hit")]
 
 
 def test_every_row_has_a_stored_ratio():

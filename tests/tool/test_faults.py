@@ -41,7 +41,7 @@ import os, sys
 import singimpact as si
 from singimpact.flights.compiled_model import compiled_model
 model = si.ImpactOscillator("x**3", "cos(2*t)", 0, "-v*(1 - v)/2")
-compiled_model(model).law.compile_here()
+compiled_model(model).laws[0].compile_here()
 print(model.impact_map(0.3, 0.5).status)
 """
 

@@ -25,8 +25,8 @@ STORED = Path(__file__).parents[1] / "data" / "limits.json"
 ArrayCall = Callable[[Array, Array], object]
 MOST = 1.5
 """A ratio may exceed the stored one by this factor."""
-OFF_WALL = 2.0
-"""First hits from the wall that a flight from off the wall may cost."""
+BESIDE = {"launch": 2.0, "between walls": 1.5}
+"""First hits from a wall, without another one, that a flight from off the wall and one between two walls may cost."""
 MODELS = {
     "linear": si.linear("2.8", "0.3", "0.8"),
     "Duffing": si.ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "cos(1.7*t)", "0.3", "0.8"),
@@ -159,12 +159,18 @@ def arrays(effort: Effort) -> list[Method]:
         if name in ("linear", "Duffing"):
             rows.append(_drawn("first_hit", f"{name}, array", aim, draw, model.first_hit))
             rows.append(_drawn("launch", f"{name}, array", 2 * aim, draw, _off_wall(model)))
+            rows.append(_drawn("between walls", f"{name}, array", 1.5 * aim, draw, _between(model)))
     return rows
 
 
 def _off_wall(osc: si.ImpactOscillator) -> Callable[..., object]:
     """Launches off the wall at drawn times with drawn velocities."""
     return lambda t, xdot: osc.launch(x=0.5, xdot=xdot, t=t)
+
+
+def _between(osc: si.ImpactOscillator) -> ArrayCall:
+    """First hits of either of two walls."""
+    return osc.replace(upper="1.3").first_hit
 
 
 # ---- calls of one state, and of ten
@@ -189,6 +195,7 @@ def calls(effort: Effort) -> list[Method]:
         ones: dict[str, tuple[Callable[..., object], float | None]] = {
             "first_hit": (osc.first_hit, None),
             "launch": (_off_wall(osc), launch),
+            "between walls": (_between(osc), launch),
             "derivative": (osc.derivative, 10.0),
             "inverse_map": (osc.inverse_map, 10.0),
         }
@@ -276,7 +283,7 @@ def _series(call: str) -> Timed:
 
 def over(rows: Sequence[Row]) -> list[str]:
     """A sentence for each row that takes more than half again as long as its stored ratio to the reference allows, and
-    for launches off the wall that take longer than two first hits.
+    for the calls of `BESIDE` that take longer than it allows.
     """
     stored, own = json.loads(STORED.read_text(encoding="utf-8")), dict(_named(rows))
     slow = [
@@ -284,12 +291,12 @@ def over(rows: Sequence[Row]) -> list[str]:
         for key, row in own.items()
         if not row.spread[0] <= MOST * stored.get(key, 0)
     ]
-    hits = {key: own.get(key.replace(": launch,", ": first_hit,")) for key in own if ": launch," in key}
-    return slow + [
-        f"{key}: {own[key].spread[0] / hit.spread[0]:.3g} first hits, at most {OFF_WALL:g}"
-        for key, hit in hits.items()
-        if hit is not None and own[key].spread[0] > OFF_WALL * hit.spread[0]
-    ]
+    for name, most in BESIDE.items():
+        for key in own:
+            hit = own.get(key.replace(f": {name},", ": first_hit,"))
+            if f": {name}," in key and hit is not None and own[key].spread[0] > most * hit.spread[0]:
+                slow.append(f"{key}: {own[key].spread[0] / hit.spread[0]:.3g} first hits, at most {most:g}")
+    return slow
 
 
 def store(rows: Sequence[Row]) -> None:

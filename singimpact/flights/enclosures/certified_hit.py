@@ -13,7 +13,7 @@ from math import ceil, floor, log2
 from typing import Any, NamedTuple, Protocol
 
 from singimpact.algebra.balls import BITS_A_DIGIT, Balls
-from singimpact.algebra.expressions import Expression, evaluate, names_in
+from singimpact.algebra.expressions import Expression, evaluate, names_in, subtract
 from singimpact.algebra.precision import Ladder, balls_at, series_of_any_length
 from singimpact.flights.enclosures.equation import (
     Equation,
@@ -25,7 +25,7 @@ from singimpact.flights.enclosures.equation import (
     programs_of,
 )
 from singimpact.flights.enclosures.motion import CarriedMotion, Start
-from singimpact.flights.enclosures.tube import NearGraze, RootAtEnd, Tube, centre, divided, first_root
+from singimpact.flights.enclosures.tube import NearGraze, RootAtEnd, Tube, below, centre, divided, first_root
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import period_over
 
@@ -150,7 +150,8 @@ def certified_hit(
         try:
             with working_at(bits + ENCLOSURE.guard):
                 begun = motion_from(osc, launch, bits, coarse, derivative, framed, expected[0])
-                hit = first_hit(begun, Balls(bits).rational(horizon), steps)
+                gap = None if osc.upper is None else _ball(subtract(osc.upper, osc.clearance), bits)
+                hit = first_hit(begun, Balls(bits).rational(horizon), steps, gap)
                 impact = _impact(osc, launch, hit, bits)
                 lack = 0 if box else _lack(impact, wanted + 1)
                 if lack <= 0:
@@ -267,15 +268,17 @@ def _period_moves(osc: Oscillator, names: tuple[str, ...]) -> bool:
 def _impact(osc: Oscillator, launch: Launch, hit: BallHit, bits: int) -> ProvedImpact:
     """The state after a hit, and D G."""
     names = launch.names
-    law = programs_of(osc, names).rho.prepared(
+    above = osc.upper is not None and bool(hit.velocity > 0)
+    side = -1 if above else 1  # the law of the upper wall is that of the model with x -> -x
+    law = programs_of(osc.mirrored if above else osc, names).rho.prepared(
         {name: _ball(_number(osc, name), bits) + _radius(launch.radii[name]) for name in names}
     )
-    v, slope, *by_law = law({"v": hit.velocity})
+    v, slope, *by_law = law({"v": side * hit.velocity})
     tau = _ball(launch.tau, bits) + _radius(launch.radii.get("tau", Fraction(0))) + hit.flight_time
     rows: list[list[Any]] = []
     if hit.derivatives:
         first = [delay + (1 if k == 0 else 0) for k, (delay, _) in enumerate(hit.derivatives)]
-        second = [slope * change for _, change in hit.derivatives]
+        second = [side * slope * change for _, change in hit.derivatives]
         for k, slope_by_number in enumerate(by_law):
             second[2 + k] += slope_by_number
         rows = [first, second]
@@ -305,7 +308,9 @@ class Motion(Protocol):
     def launched(self) -> bool: ...
     def tubes(self, most: Any = None) -> tuple[Tube, Tube, Any]: ...
     def advance(self, length: Any) -> None: ...
-    def at_hit(self, root: Any, velocity: Any, rate: Any) -> tuple[Any, Any, list[tuple[Any, Any]]]: ...
+    def at_hit(
+        self, root: Any, velocity: Any, rate: Any, place: Any = None
+    ) -> tuple[Any, Any, list[tuple[Any, Any]]]: ...
 
 
 class BallHit(NamedTuple):
@@ -317,8 +322,12 @@ class BallHit(NamedTuple):
     steps: int
 
 
-def first_hit(motion: Motion, horizon: Any, steps: int) -> BallHit:
+def first_hit(motion: Motion, horizon: Any, steps: int, gap: Any = None) -> BallHit:
     """The first hit of every member of a set of states.
+
+    Parameters
+    ----------
+    gap : x - c at the upper wall, a ball; None of a model with one wall. At the upper wall the velocity is > 0.
 
     Raises
     ------
@@ -334,10 +343,13 @@ def first_hit(motion: Motion, horizon: Any, steps: int) -> BallHit:
                 raise Refused("the launch velocity is not shown positive")
         else:
             inner = value, slope
-        shorter = length
+        shorter, over = length, None
         while True:
             try:
                 root = first_root(*inner, shorter, motion.bits)
+                if gap is not None:
+                    last = shorter if root is None else centre(root.upper())
+                    over = first_root(*below(value, slope, gap), last, motion.bits)
                 break
             except RootAtEnd:
                 shorter = centre(shorter * SHORTER)
@@ -345,7 +357,15 @@ def first_hit(motion: Motion, horizon: Any, steps: int) -> BallHit:
                     raise Refused("the ball of a state grew too wide to tell the sign of x - c") from None
             except NearGraze as graze:
                 after = float((motion.time + graze.at).mid())
-                raise Refused(f"x - c and x' both vanish {after:.6g} after the launch, as far as balls tell") from None
+                wall = "x - c" if gap is None else "the distance from a wall"
+                raise Refused(f"{wall} and x' both vanish {after:.6g} after the launch, as far as balls tell") from None
+        if over is not None:
+            if root is not None and not over < root:
+                raise Refused("the hits of both walls are not told apart")
+            time, velocity, derivatives = motion.at_hit(over, slope(over), slope(over), gap)
+            if time > horizon:
+                raise NoHit(f"no hit comes before {float(horizon.mid()):.6g}")
+            return BallHit(time, velocity, derivatives, count)
         if root is not None:
             rate = inner[1](root)
             velocity = slope(root)

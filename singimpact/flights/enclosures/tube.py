@@ -60,6 +60,11 @@ def divided(tube: Tube, slope: Tube, removed: int) -> tuple[Tube, Tube]:
     return Tube(y, value), Tube(y.derivative(), rate)
 
 
+def below(tube: Tube, slope: Tube, place: Any) -> tuple[Tube, Tube]:
+    """place - z and its slope."""
+    return Tube(place - tube.polynomial, tube.errors), Tube(-slope.polynomial, slope.errors)
+
+
 def upper(value: Any) -> Any:
     """An exact upper bound of the modulus of a ball or of a complex ball."""
     return abs(value).upper()

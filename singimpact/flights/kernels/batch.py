@@ -7,13 +7,22 @@ constant too large to be unrolled, and sum integers: both keep them vectors.
 
 from __future__ import annotations
 
+from math import inf
+
 from singimpact.flights.kernels.batch_isolate import isolate
-from singimpact.flights.kernels.batch_refine import expand, quintic_guess, refine_roots, turn_waves
+from singimpact.flights.kernels.batch_refine import (
+    expand,
+    quintic_guess,
+    refine_roots,
+    reflect_hits,
+    turn_waves,
+)
 from singimpact.flights.kernels.batch_response import judge_hits, respond
 from singimpact.flights.kernels.hits import AT_REST, linear_hit
 from singimpact.flights.kernels.orbits import rebound
 from singimpact.flights.kernels.state import (
     ACC,
+    ACROSS,
     AT,
     COSINE,
     HEIGHT,
@@ -23,6 +32,7 @@ from singimpact.flights.kernels.state import (
     MODE,
     PHASE,
     RATE,
+    SIDE,
     SINCE,
     SINE,
     SIZE,
@@ -48,6 +58,7 @@ def hit_batches(tau: Array, v: Array, heights: Array, model: Model, batch: Batch
             lane[V + k] = v[b + k]
             lane[HEIGHT + k] = heights[b + k] if batch.launched < 0 else 0.0
             lane[MODE + k] = 0.0 if (v[b + k] > 0) | (batch.launched < 0) else 3.0
+            lane[SIDE + k] = 1.0
         if fly_batch(model, batch) > 0:
             respond(model, batch)
             judge_hits(lane, batch.X, model)
@@ -56,7 +67,7 @@ def hit_batches(tau: Array, v: Array, heights: Array, model: Model, batch: Batch
                 for k in range(LANES):
                     columns[k] = batch.X[row, k]
         for k in range(LANES):
-            status[b + k] = 0 if lane[MODE + k] == 1.0 else AT_REST
+            status[b + k] = (0 if lane[SIDE + k] > 0 else ACROSS) if lane[MODE + k] == 1.0 else AT_REST
             if lane[MODE + k] != 2.0:
                 continue
             status[b + k], _a = linear_hit(
@@ -70,7 +81,7 @@ def hit_batches(tau: Array, v: Array, heights: Array, model: Model, batch: Batch
 
 
 def fly_batches(tau: Array, v: Array, count: int, w: Array, model: Model, batch: Batch, status: Array) -> None:
-    """Fly `count` impacts from every state; tau, v become the last states, status what ended an orbit, 0 otherwise.
+    """Fly `count` impacts of one wall from every state; tau, v become the last states, status what ended one, or 0.
 
     Parameters
     ----------
@@ -81,7 +92,7 @@ def fly_batches(tau: Array, v: Array, count: int, w: Array, model: Model, batch:
     for b in range(0, len(v), LANES):
         for k in range(LANES):
             lane[V + k], lane[SINCE + k], lane[LOST + k], lane[TURNS + k] = v[b + k], 0.0, 0.0, 0.0
-            lane[MODE + k] = 0.0 if status[b + k] == 0 else 3.0
+            lane[MODE + k], lane[SIDE + k] = 0.0 if status[b + k] == 0 else 3.0, 1.0
         for _ in range(count):
             for k in range(LANES):
                 lane[AT + k] = tau[b + k] + lane[SINCE + k]
@@ -113,10 +124,12 @@ def fly_batch(model: Model, batch: Batch) -> int:
     """The number of states that fly: TIME and SPEED of a hit where the mode becomes 1."""
     lane, wave, table = batch.lane, batch.wave, batch.table
     launch_phases(lane, wave, model, table.step)
-    flying = isolate(batch, model.numbers, model.rules.ulp)
+    flying = isolate(batch, model.numbers, model.rules.ulp, model.rules.gap)
     if flying > 0:
         turn_waves(lane, wave, batch.local, table.waves)
         expand(lane, batch.local, batch.series, batch.X)
+        if model.rules.gap < inf:
+            reflect_hits(lane, batch.X, model.rules.gap)
         quintic_guess(lane, table.step, batch.launched)
         refine_roots(batch, table.step, model.rules.horizon)
     return flying

@@ -8,6 +8,8 @@ on the Bernstein coefficients of p, p', p''.
 
 from __future__ import annotations
 
+from math import inf
+
 from singimpact.flights.kernels.state import (
     A_COS,
     A_SIN,
@@ -46,8 +48,10 @@ from singimpact.flights.kernels.state import (
 )
 
 
-def isolate(batch: Batch, p: Linear, ulp: float) -> int:
-    """The number of states that fly; each then stands before a root (mode 1) or is left to `tabulated_flight` (2)."""
+def isolate(batch: Batch, p: Linear, ulp: float, gap: float) -> int:
+    """The number of states that fly; each then stands before a root (mode 1, or 4 of x - c = gap) or is left to
+    `tabulated_flight` (2).
+    """
     lane, wave, table, launched = batch.lane, batch.wave, batch.table, batch.launched
     step, last, jerk, highest = table.step, len(table.rows) - 1, 0.0, 0.0
     # 2.3: on the first stride the remainder is compared with a multiple of the distance from the launch
@@ -68,6 +72,8 @@ def isolate(batch: Batch, p: Linear, ulp: float) -> int:
         if launched < 0:
             lift(lane, p, row)
         by_v, rest = 4 * ulp * abs(row[X_BY_V]), 4 * ulp * (row[SIZE_STEADY] + highest * row[SIZE_X]) + steady
+        if gap < inf:
+            watch_other_wall(lane, step, gap, by_x, by_u, by_v, rest)
         going, doubtful = go_on(lane, step, by_x, by_u, by_v, rest)
         if doubtful > 0:
             going += judge_steps(lane, step, jerk, p, launched)
@@ -122,6 +128,33 @@ def lift(lane: Array, p: Linear, row: Array) -> None:
         lane[Z1 + k] += height * by_z
         lane[U1 + k] += height * by_u
         lane[E1 + k] += height * by_e
+
+
+def watch_other_wall(lane: Array, step: float, gap: float, by_x: float, by_u: float, by_v: float, rest: float) -> None:
+    """States that may come to x - c = gap on their step: mode 4 where x rises through it, else 2.
+
+    The differences of the Bernstein coefficients are those of x': x rises where they are above `room`, and is concave
+    where their differences are below it, see `judge_steps`. A concave x that is above the gap in the middle of the step
+    has risen through it once before.
+    """
+    fifth, twentieth = step * 0.2, step * step / 20.0
+    for k in range(LANES):
+        z0, u0, e0 = lane[Z0 + k], lane[U0 + k], lane[E0 + k]
+        z1, u1, e1 = lane[Z1 + k], lane[U1 + k], lane[E1 + k]
+        b1, b4 = z0 + fifth * u0, z1 - fifth * u1
+        b2, b3 = 2 * b1 - z0 + twentieth * e0, 2 * b4 - z1 + twentieth * e1
+        low, high = (b1 if b1 > b2 else b2), (b3 if b3 > b4 else b4)
+        high = high if high > low else low
+        high = high if high > z1 else z1
+        room = by_x * abs(z0) + by_u * abs(u0) + by_v * abs(lane[V + k]) + rest
+        rises = (b1 > z0) & (b2 - b1 > room) & (b3 - b2 > room) & (b4 - b3 > room) & (z1 - b4 > room)
+        rises = rises & ((b1 - z0 > room) | (z0 == 0.0)) & (z0 < gap - room) & (z1 > gap + room)
+        concave = (twentieth * e0 < -room) & (b3 - 2 * b2 + b1 < -room) & (b4 - 2 * b3 + b2 < -room)
+        concave = concave & (twentieth * e1 < -room) & (z0 < gap - room)
+        half = (z0 + 5 * b1 + 10 * b2 + 10 * b3 + 5 * b4 + z1) / 32
+        near = (lane[MODE + k] == 0.0) & (not (high < gap - room))
+        kind = 4.0 if rises | (concave & (half > gap + 5 * room)) else 2.0
+        lane[MODE + k] = kind if near else lane[MODE + k]
 
 
 def go_on(lane: Array, step: float, by_x: float, by_u: float, by_v: float, rest: float) -> tuple[int, int]:

@@ -13,6 +13,7 @@ from singimpact.flights.kernels.state import (
     LANES,
     MODE,
     PLACE,
+    SIDE,
     SPEED,
     TIME,
     TURN_COS,
@@ -57,10 +58,26 @@ def expand(lane: Array, local: Array, series: Array, X: Array) -> None:
         X[2, k] = 0.5 * lane[E0 + k]
 
 
+def reflect_hits(lane: Array, X: Array, gap: float) -> None:
+    """States that stand before a root of x - c = gap go on with x -> -x, as those of a lower wall; mode 4 becomes 1."""
+    for k in range(LANES):
+        over = lane[MODE + k] == 4.0
+        side, lift = -1.0 if over else 1.0, gap if over else 0.0
+        lane[SIDE + k], lane[MODE + k] = side, 1.0 if over else lane[MODE + k]
+        lane[Z0 + k], lane[Z1 + k] = lift + side * lane[Z0 + k], lift + side * lane[Z1 + k]
+        lane[U0 + k], lane[U1 + k] = side * lane[U0 + k], side * lane[U1 + k]
+        lane[E0 + k], lane[E1 + k] = side * lane[E0 + k], side * lane[E1 + k]
+    for i in range(BATCH_ORDER + 1):
+        for k in range(LANES):
+            X[i, k] *= lane[SIDE + k]
+    for k in range(LANES):
+        X[0, k] = lane[Z0 + k]
+
+
 def quintic_guess(lane: Array, step: float, launched: float) -> None:
     """TIME becomes the root of the quintic on the step; launched : see `Batch`."""
     for k in range(LANES):
-        first = lane[PLACE + k] == launched
+        first = (lane[PLACE + k] == launched) & (lane[SIDE + k] > 0)
         z0, rise = lane[Z0 + k], lane[Z1 + k] - lane[Z0 + k]
         d0, d1 = step * lane[U0 + k], step * lane[U1 + k]
         c0, c1 = step * step * lane[E0 + k] * 0.5, step * step * lane[E1 + k] * 0.5
@@ -98,7 +115,7 @@ def halley_step(batch: Batch, step: float, small: float) -> None:
     """A step of Halley's method for TIME, and SPEED there; it must be this small, in steps of the table."""
     lane, X, launched = batch.lane, batch.X, batch.launched
     for k in range(LANES):
-        first = lane[PLACE + k] == launched
+        first = (lane[PLACE + k] == launched) & (lane[SIDE + k] > 0)
         x = lane[TIME + k]
         value, slope, bend = X[BATCH_ORDER, k], 0.0, 0.0
         for i in range(BATCH_ORDER - 1, 0, -1):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import exp
+from math import exp, inf
 
 from singimpact.flights.kernels.double_double import product_twice
 from singimpact.flights.kernels.hits import UNIT, at_the_hit, is_rough, rounded
@@ -32,6 +32,7 @@ from singimpact.flights.kernels.state import (
     LANES,
     MODE,
     RATE,
+    SIDE,
     SINE,
     SLOPE,
     SPEED,
@@ -87,6 +88,21 @@ def respond(model: Model, batch: Batch) -> None:
             lane[BY_TAU_DOT + k] += moved if far else 0.0
     if resonant > 0:
         respond_near_resonance(lane, wave, batch.work.launch, reach, p)
+    if model.rules.gap < inf:
+        reflect_response(lane, model.rules.gap, p)
+
+
+def reflect_response(lane: Array, gap: float, p: Linear) -> None:
+    """The derivatives at hits of the other wall, and x'' there, with x -> -x."""
+    for k in range(LANES):
+        side, u = lane[SIDE + k], lane[SPEED + k]
+        # THERE is still the force less damping times the speed of the model with x -> -x
+        force = side * (lane[THERE + k] + p.damping * u)
+        lane[THERE + k] = (force if side > 0 else force + p.stiffness * gap) - p.damping * u
+        lane[FREE + k] *= side
+        lane[SLOPE + k] *= side
+        lane[BY_TAU + k] *= side
+        lane[BY_TAU_DOT + k] *= side
 
 
 def respond_soon(lane: Array, wave: Array, series: Array, p: Linear) -> None:
@@ -169,7 +185,8 @@ def judge_hits(lane: Array, X: Array, model: Model) -> None:
         late, off = rounded(time, u, e, largest * reach, largest, p.fastest, rules.likely)
         rough = is_rough(late, off, condition, velocity_condition, rules)
         # as in `hits.linear_hit`
-        rough = rough & ((time > model.table.step) | (lane[ACC + k] >= 0) | (lane[HEIGHT + k] > 0))
+        risen = (lane[HEIGHT + k] > 0) | (lane[SIDE + k] < 0)
+        rough = rough & ((time > model.table.step) | (lane[ACC + k] >= 0) | risen)
         lane[MODE + k] = 2.0 if rough & (lane[MODE + k] == 1.0) else lane[MODE + k]
         X[FLIGHT_TIME, k], X[VELOCITY, k] = time, u
         X[CONDITION, k], X[VELOCITY_CONDITION, k] = condition, velocity_condition

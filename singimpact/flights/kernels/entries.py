@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from math import nan
+from math import inf, nan
 from typing import Any
 
 from singimpact.flights.kernels.batch import fly_batches, hit_batches
@@ -29,7 +29,10 @@ from singimpact.flights.kernels.layout import (
     batch_model,
     block,
     columns_of,
+    laws_of,
     linear_model,
+    other_linear_model,
+    other_taylor_model,
     scratch_length,
     scratch_of,
     taylor_model,
@@ -37,7 +40,7 @@ from singimpact.flights.kernels.layout import (
 from singimpact.flights.kernels.linear import place_of, response
 from singimpact.flights.kernels.orbits import iterate, orbit_segment
 from singimpact.flights.kernels.refine import fill_fine
-from singimpact.flights.kernels.state import Search
+from singimpact.flights.kernels.state import ACROSS, Search
 from singimpact.flights.kernels.tables import bounds, expansions, tabulate
 from singimpact.flights.kernels.taylor import follow, taylor_flight
 from singimpact.flights.kernels.variational import derivatives_at, judge
@@ -52,12 +55,13 @@ many flights at given times."""
 
 
 def linear_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, out: Any, status: Any) -> int:
-    """PREPARE, HITS, DROPS, SEGMENT, RELEASES, PLACES or VARIATIONS of a linear model.
+    """PREPARE, HITS, DROPS, SEGMENT, ITERATE, RELEASES, PLACES or VARIATIONS of a linear model.
 
     Parameters
     ----------
     sizes : see `layout`. flat, scratch : of the model. tau, v : states. w : times; the part of a time below which
-        chatter ends an orbit, then constants of rho; orders of roots removed at rest; x - c at the start.
+        chatter ends an orbit, then constants of rho, and those of the other wall; orders of roots removed at rest;
+        x - c at the start.
     out : results. status : codes.
 
     Returns
@@ -66,15 +70,21 @@ def linear_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, 
     """
     count, kind = sizes[COUNT], sizes[KIND]
     model, work = linear_model(flat, sizes), scratch_of(scratch, sizes)
+    models = model, other_linear_model(flat, sizes, model)
     if kind == SEGMENT:
-        flown, code = orbit_segment(
-            tau[0], v[0], w[0], block(w, 1, (sizes[RHO],)), model, work, block(out, 0, (count, 11))
-        )
+        laws = laws_of(w, 1, sizes, model)
+        flown, code = orbit_segment(tau[0], v[0], w[0], laws, models, work, block(out, 0, (count, 12)))
         status[0] = code
         return int(flown)
     if kind == PREPARE:
+        if model.rules.gap < inf:
+            prepare(models[1], work)
         return prepare(model, work)
     states, speeds, codes = block(tau, 0, (count,)), block(v, 0, (count,)), block(status, 0, (count,))
+    if kind == ITERATE:
+        laws = laws_of(w, 0, sizes, model)
+        iterate(states, speeds, sizes[IMPACTS], laws, models, work, block(out, 0, (count,)), codes)
+        return 0
     if kind in (HITS, DROPS):
         heights = block(w, 0, (count if kind == DROPS else 0,))
         return linear_hits(states, speeds, heights, model, work, block(out, 0, (10, count)), codes)
@@ -209,15 +219,16 @@ def taylor_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, 
     """HITS, SEGMENT or ITERATE of a model flown in Taylor steps; as `linear_entry` and `batch_entry`."""
     count, kind = sizes[COUNT], sizes[KIND]
     model, work = taylor_model(flat, sizes), scratch_of(scratch, sizes)
+    models = model, other_taylor_model(flat, sizes, model)
     if kind == SEGMENT:
-        flown, code = orbit_segment(
-            tau[0], v[0], w[0], block(w, 1, (sizes[RHO],)), model, work, block(out, 0, (count, 11))
-        )
+        laws = laws_of(w, 1, sizes, model)
+        flown, code = orbit_segment(tau[0], v[0], w[0], laws, models, work, block(out, 0, (count, 12)))
         status[0] = code
         return int(flown)
     states, speeds, codes = block(tau, 0, (count,)), block(v, 0, (count,)), block(status, 0, (count,))
     if kind == ITERATE:
-        iterate(states, speeds, sizes[IMPACTS], block(w, 0, (sizes[RHO],)), model, work, codes)
+        laws = laws_of(w, 0, sizes, model)
+        iterate(states, speeds, sizes[IMPACTS], laws, models, work, block(out, 0, (count,)), codes)
         return 0
     return taylor_hits(states, speeds, block(w, 0, (count,)), model, work, block(out, 0, (10, count)), codes)
 
@@ -298,10 +309,10 @@ def judged_hits(tau: Any, v: Any, removed: Any, model: Any, work: Any, columns: 
         )
         for k in range(11):
             out[k, i] = nan
-        if code == 0 and trace[0, 3] > 0:
+        if (code == 0 or code == ACROSS) and trace[0, 3] > 0:
             judge(work.launch, trace, model.numbers, rules, work.flight, columns, work.hit)
             row = work.flight.q
-            carried_errors(work.launch[0], v[i], time, u, work.hit, row)
+            carried_errors(work.launch[0], v[i], time, u, 1.0 if code == 0 else -1.0, work.hit, row)
             for k in range(11):
                 out[k, i] = row[k]
     return 0

@@ -12,6 +12,7 @@ from singimpact.flights.kernels.double_double import sum_twice
 from singimpact.flights.kernels.linear import coefficients, response
 from singimpact.flights.kernels.refine import refine_hit
 from singimpact.flights.kernels.state import (
+    ACROSS,
     CONDITION,
     COSINE,
     FLIGHT_TIME,
@@ -73,25 +74,29 @@ def linear_hit(t: float, t_low: float, v: float, height: float, near: float, mod
         return PRESSED, a
     code, time, u, depth, bound = tabulated_flight(launch, v, height, a, model, work.flight)
     hit[FLIGHT_TIME], hit[VELOCITY], hit[CONDITION], hit[VELOCITY_CONDITION] = time, u, depth, bound
-    if code != 0:
+    if code != 0 and code != ACROSS:
         return code, a
     # the size of a motion from a height is that of one from the wall, as fast
     by_v, by_v_dot, by_tau, by_tau_dot, size, speed = response(launch, abs(v) + p.fastest * height, time, p)
     at, at_low = sum_twice(t, t_low, time, 0.0)
-    e = wall_acceleration(at, at_low, p, model.rest, work.flight.q) - p.damping * u
+    e, side, wall = wall_acceleration(at, at_low, p, model.rest, work.flight.q), 1.0, code
+    if code == ACROSS:
+        e, side = p.stiffness * model.rules.gap - e, -1.0
+        by_v, by_v_dot, by_tau, by_tau_dot = -by_v, -by_v_dot, -by_tau, -by_tau_dot
+    e -= p.damping * u
     conditioned(t, v, e, (by_v, by_v_dot, by_tau, by_tau_dot), hit)
     hit[TIME_ERROR], hit[VELOCITY_ERROR] = rounded(time, u, e, size, speed, p.fastest, model.rules.likely)
     rough = is_rough(hit[TIME_ERROR], hit[VELOCITY_ERROR], hit[CONDITION], hit[VELOCITY_CONDITION], model.rules)
     # a flight that is pressed back at once is a short series in t that loses nothing
-    if rough and (time > model.table.step or a >= 0 or height > 0):
-        code = NOT_REFINED
-    if code == NOT_REFINED and len(model.fine) > 0:
-        hit[FLIGHT_TIME], hit[VELOCITY], near = refine_hit(t, t_low, v, height, time, model, work.twice)
+    if rough and (time > model.table.step or a >= 0 or height > 0 or side < 0):
+        code = wall + NOT_REFINED
+    if code == wall + NOT_REFINED and len(model.fine) > 0:
+        hit[FLIGHT_TIME], hit[VELOCITY], near = refine_hit(t, t_low, v, height, time, side, model, work.twice)
         hit[TIME_ERROR], hit[VELOCITY_ERROR] = min(hit[TIME_ERROR], 3 * UNIT), min(hit[VELOCITY_ERROR], 63 * UNIT)
-        code = 0
+        code = wall
         if not near:
             hit[FLIGHT_TIME], hit[VELOCITY] = time, u
-            code = NOT_REFINED
+            code = wall + NOT_REFINED
     hit[TIME_ERROR] += UNIT
     hit[VELOCITY_ERROR] += UNIT
     return code, a
@@ -198,14 +203,20 @@ def released(removed: int, a: float, model: Any, work: Any) -> Any:
 def raised(rules: Any, degrees: int) -> Any:
     """Rules with steps of a higher degree."""
     return Rules(rules.horizon, rules.budget, rules.order + degrees, rules.short, rules.ulp, rules.likely,
-                 rules.rough_time, rules.rough_velocity, rules.pace, rules.lost, rules.reach)  # fmt: skip
+                 rules.rough_time, rules.rough_velocity, rules.pace, rules.lost, rules.reach, rules.gap,
+                 rules.gap_low)  # fmt: skip
 
 
-def carried_errors(t: float, v: float, time: float, u: float, judged: Any, row: Any) -> None:
-    """A hit with conditions and errors from what `variational.judge` returns; entry 10 counts the Taylor steps."""
-    zz, zu, uu, e, steps = judged[4], judged[5], judged[6], judged[7], judged[8]
+def carried_errors(t: float, v: float, time: float, u: float, side: float, judged: Any, row: Any) -> None:
+    """A hit with conditions and errors from what `variational.judge` returns; entry 10 counts the Taylor steps.
+
+    Parameters
+    ----------
+    side : 1, or -1 of a hit of the other wall, whose velocity u is that of the model with x -> -x.
+    """
+    zz, zu, uu, e, steps = judged[4], judged[5], judged[6], side * judged[7], judged[8]
     row[FLIGHT_TIME], row[VELOCITY] = time, u
-    conditioned(t, v, e, (judged[0], judged[1], judged[2], judged[3]), row)
+    conditioned(t, v, e, (side * judged[0], side * judged[1], side * judged[2], side * judged[3]), row)
     # the error (z, u) at the time of the hit moves the hit by -z/u and its velocity by u - z e/u; zz, zu, uu are second
     # moments
     turn = e / u

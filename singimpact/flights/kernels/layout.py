@@ -6,6 +6,7 @@ functions.
 
 from __future__ import annotations
 
+from math import inf
 from typing import Any
 
 from singimpact.flights.kernels.refine import LEVEL
@@ -27,8 +28,8 @@ from singimpact.flights.kernels.state import (
 KIND, COUNT, WAVES, ROWS, ROOM, CONSTANTS, IMPACTS, RHO = range(8)
 """Entries of `sizes`: the kind of work; states, impacts or times; waves; rows of the tables and of the work of a
 flight; room for Taylor coefficients; constants of a recurrence; impacts of an iteration; constants of rho."""
-TURN, SCALARS = 11, 16
-"""Where the period and the scalars of a model begin; the eleven rules come first."""
+TURN, SCALARS = 13, 18
+"""Where the period and the scalars of a model begin; the thirteen rules come first."""
 TERMS = 24
 """Entries of 1/k! in a table."""
 
@@ -41,10 +42,15 @@ def block(flat: Any, at: int, shape: Any) -> Any:
     return flat[at : at + size].reshape(shape)
 
 
+def beyond(flat: Any, at: int) -> Any:
+    """A flat array from `at` on; `flights.bind` puts an address in its place."""
+    return flat[at:]
+
+
 def rules_of(flat: Any) -> Any:
-    """The first eleven numbers of a model."""
+    """The first thirteen numbers of a model."""
     return Rules(flat[0], int(flat[1]), int(flat[2]), int(flat[3]), flat[4], flat[5], flat[6], flat[7], flat[8],
-                 flat[9], flat[10])  # fmt: skip
+                 flat[9], flat[10], flat[11], flat[12])  # fmt: skip
 
 
 def numbers_of(flat: Any, scalars: int, at: int, waves: int) -> Any:
@@ -76,6 +82,23 @@ def linear_model(flat: Any, sizes: Any) -> Any:
     return Model(numbers, rest, table, rules_of(flat), block(flat, TURN, (5,)), fine)
 
 
+def other_linear_model(flat: Any, sizes: Any, model: Any) -> Any:
+    """The model with x -> -x, which lies behind one with two walls; else the model itself."""
+    # an offset is chosen, not a model: compiled code would count references to its arrays
+    return linear_model(beyond(flat, linear_length(sizes) if model.rules.gap < inf else 0), sizes)
+
+
+def other_taylor_model(flat: Any, sizes: Any, model: Any) -> Any:
+    """`other_linear_model` of a model without a closed form."""
+    return taylor_model(beyond(flat, SCALARS + sizes[CONSTANTS] if model.rules.gap < inf else 0), sizes)
+
+
+def laws_of(w: Any, at: int, sizes: Any, model: Any) -> Any:
+    """The constants of rho at both walls, from `at` on."""
+    length = sizes[RHO]
+    return block(w, at, (length,)), block(w, at + (length if model.rules.gap < inf else 0), (length,))
+
+
 def batch_model(flat: Any, scratch: Any, sizes: Any, work: Any, launched: float) -> Any:
     """`state.Batch` behind the model and the scratch of one flight."""
     waves, rows = sizes[WAVES], sizes[ROWS]
@@ -91,9 +114,9 @@ def batch_model(flat: Any, scratch: Any, sizes: Any, work: Any, launched: float)
     return Batch(table, series, turn, lane, wave, local, X, work, launched)
 
 
-def linear_length(sizes: Any) -> int:
-    """Doubles of a linear model."""
-    waves, rows = int(sizes[WAVES]), int(sizes[ROWS])
+def linear_length(sizes: Any) -> Any:
+    """Doubles of a linear model, a whole number."""
+    waves, rows = sizes[WAVES], sizes[ROWS]
     n = 3 + 2 * waves
     both = 2 * table_length(waves, rows)
     return SCALARS + 10 + 8 * waves + both + 4 * LEVEL * n * n + (BATCH_ORDER + 1) * n + 3

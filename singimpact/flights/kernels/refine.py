@@ -116,8 +116,15 @@ def state_after(t: float, t_low: float, v: float, height: float, time: float, mo
     move_twice(space, left, left_low, p, rest)
 
 
-def refine_hit(t: float, t_low: float, v: float, height: float, time: float, model: Any, space: Any) -> Any:
-    """Flight time and velocity of a hit known to be near `time`, and whether Halley's method settled there."""
+def refine_hit(
+    t: float, t_low: float, v: float, height: float, time: float, side: float, model: Any, space: Any
+) -> Any:
+    """Flight time and velocity of a hit known to be near `time`, and whether Halley's method settled there.
+
+    Parameters
+    ----------
+    side : 1, or -1 of a hit of the other wall, whose velocity is that of the model with x -> -x.
+    """
     p, y = model.numbers, space[0]
     for _ in range(4):
         state_after(t, t_low, v, height, time, model, space)
@@ -129,14 +136,17 @@ def refine_hit(t: float, t_low: float, v: float, height: float, time: float, mod
             e += p.waves[j, COSINE] * c + p.waves[j, SINE] * s
             jerk += p.waves[j, RATE] * (p.waves[j, SINE] * c - p.waves[j, COSINE] * s)
         jerk -= p.damping * e
-        change = -y[0, 0] / u
+        above = y[0, 0]
+        if side < 0:
+            above, _low = sum_twice(y[0, 0], y[0, 1], -model.rules.gap, -model.rules.gap_low)
+        change = -above / u
         # next to a graze a step is not short beside u/e, and Halley's step leaves an error of its third order
         settled = abs(change * e) < 1e-6 * abs(u) and abs(change) < 1e-6 * time
         # Halley's method: Newton's step with the curvature x'' = e, which here costs nothing
         change *= 1 - change * e / (2 * u)
         if settled:
-            return time + change, u + (y[1, 1] + change * (e + change * jerk / 2)), True
-        if not (u < 0 and abs(change) < 1e-3 * time):
+            return time + change, side * (u + (y[1, 1] + change * (e + change * jerk / 2))), True
+        if not (side * u < 0 and abs(change) < 1e-3 * time):
             break
         time += change
-    return time, y[1, 0], False
+    return time, side * y[1, 0], False

@@ -61,6 +61,7 @@ class Rules(NamedTuple):
     a table, and of the steps of `variational.judge`. ulp : rounding error allowed for, relative to the size of the
     terms. likely : the same, as it usually is, in roundings. rough_time, rough_velocity : relative errors of a hit
     below these are never refined. pace : the rate at which the model moves. lost : 1 - r, r of a slow impact.
+    gap, gap_low : x - c at the other wall, and what the double leaves out; inf and 0 without one.
     """
 
     horizon: Any
@@ -74,6 +75,8 @@ class Rules(NamedTuple):
     pace: Any
     lost: Any
     reach: Any
+    gap: Any
+    gap_low: Any
 
 
 class Work(NamedTuple):
@@ -138,7 +141,11 @@ FLIGHT_TIME, VELOCITY, CONDITION, VELOCITY_CONDITION, TIME_ERROR, VELOCITY_ERROR
 TIME_BY_TAU, TIME_BY_V, VELOCITY_BY_TAU, VELOCITY_BY_V = range(6, 10)
 """Columns of a hit. Where a flight ends in no hit, CONDITION and VELOCITY_CONDITION are depth and bound."""
 
-LANES, LANE_ROWS = 64, 19
+ACROSS = 70
+"""Added to the code of a flight that ends at the other wall; its velocity, and the derivatives of it, are those of the
+model with x -> -x, whose lower wall that is."""
+
+LANES, LANE_ROWS = 64, 20
 """States of a batch, and rows of the array that holds them: row ROW of state k is lane[ROW + k]."""
 V, AT, LATE, ACC, SIZE, SINCE, LOST, TURNS = range(0, 8 * LANES, LANES)
 """v, the launch time in two parts, a_c and the size of its terms there; of an orbit the time since the start, what its
@@ -146,10 +153,12 @@ sum has lost, whole periods less."""
 HEIGHT = SINCE
 """x - c at the launch of a flight that is no part of an orbit."""
 MODE, PLACE, TIME, SPEED = range(8 * LANES, 12 * LANES, LANES)
-"""What becomes of the flight (0 flies, 1 a plain crossing, 2 left to `tabulated_flight`, 3 over); its step; time and
-velocity of the hit."""
+"""What becomes of the flight (0 flies, 1 a plain crossing, 2 left to `tabulated_flight`, 3 over, 4 a plain crossing of
+the other wall); its step; time and velocity of the hit."""
 Z0, U0, E0, Z1, U1, E1, BOUND = range(12 * LANES, 19 * LANES, LANES)
 """x - c, x' and x'' at both ends of the step, and the bound that x - c must exceed."""
+SIDE = 19 * LANES
+"""1, or -1 of a hit of the other wall, whose numbers are those of the model with x -> -x."""
 FREE, SLOPE, BY_TAU, BY_TAU_DOT, THERE, GROWTH = range(12 * LANES, 18 * LANES, LANES)
 """At the hit, where the step is done with: the derivatives of x and x' by v and by tau; x''; growth of the free
 motion."""

@@ -7,7 +7,7 @@ to `taylor_flight`.
 
 from __future__ import annotations
 
-from math import cos, sin
+from math import cos, inf, sin
 from typing import Any
 
 from singimpact.flights.kernels.linear import quiet, restart
@@ -15,6 +15,7 @@ from singimpact.flights.kernels.roots import first_root
 from singimpact.flights.kernels.state import (
     A_COS,
     A_SIN,
+    ACROSS,
     COSINE,
     RATE,
     SINE,
@@ -34,7 +35,7 @@ from singimpact.flights.kernels.state import (
     X_STEADY,
     Interval,
 )
-from singimpact.flights.kernels.taylor import taylor_flight
+from singimpact.flights.kernels.taylor import other_root, taylor_flight
 
 
 def tabulated_flight(launch: Any, v: float, height: float, acceleration: float, model: Any, work: Any) -> Any:
@@ -47,11 +48,11 @@ def tabulated_flight(launch: Any, v: float, height: float, acceleration: float, 
     """
     p, table, W = model.numbers, model.table, work.W
     step, ulp, horizon = table.step, model.rules.ulp, max(model.rules.horizon, model.rules.reach * v)
-    waves, last = len(p.waves), len(table.rows) - 1
+    waves, last, gap = len(p.waves), len(table.rows) - 1, model.rules.gap
     start, z0, u0, base = 0.0, height, v, 0.0
     for j in range(waves):
         W[2 * j, 0], W[2 * j + 1, 0] = launch[2 * j], launch[2 * j + 1]
-    if height == 0 and acceleration < 0 and -16 * v > acceleration * step:
+    if height == 0 and acceleration < 0 and -16 * v > acceleration * step and not gap < inf:
         # a low velocity returns near 2 v/|a|, and few terms are enough
         code, s, slope = root_after_launch(v, acceleration, -4 * v / acceleration, model, work)
         if code == 1 and s <= horizon:
@@ -65,7 +66,7 @@ def tabulated_flight(launch: Any, v: float, height: float, acceleration: float, 
             start += last * step
             z0, u0, base = restarted(launch, (height, v), start, z, u, model, work)
             ahead = quiet(z0, u0, W, p)
-            if ahead > last * step:
+            if ahead > last * step and not gap < inf:
                 # far above the wall: tables in which no impact is possible are passed over
                 if start + ahead >= horizon:
                     return 3, start, u0, z0, base
@@ -94,22 +95,45 @@ def tabulated_flight(launch: Any, v: float, height: float, acceleration: float, 
             noise + noise1
         )
         time = start + m * step
-        if not (min(min(b1, b2), min(b3, b4)) > room and z1 > room and (z > room or is_launch(time, z))):
+        touches = not (min(min(b1, b2), min(b3, b4)) > room and z1 > room and (z > room or is_launch(time, z)))
+        far = gap < inf and not max(max(max(b1, b2), max(b3, b4)), max(z, z1)) < gap - room
+        if touches or far:
             between = Interval(time, m, z, u, e, z1, u1, e1, noise, noise1, room)
-            code, s, slope = resolve_step(v, acceleration, between, model, work)
+            code, s, slope = either_wall(touches, far, v, acceleration, between, model, work)
             if code == 2:
                 removed, work.q[0] = (1 if height == 0 else 0), height
                 return taylor_flight(
                     launch, v, removed, acceleration - p.stiffness * height, p, model.rules, work, W[:0]
                 )
-            if code == 1:
+            if code != 0:
                 if time + s > horizon:
                     return 3, time, u, z, noise
-                return 0, time + s, slope, 0.0, 0.0
+                return code - 1, time + s, slope, 0.0, 0.0
         if time + step >= horizon:
             return 3, time, u, z, noise
         z, u, e, noise = z1, u1, e1, noise1
         m += 1
+
+
+def either_wall(touches: Any, far: Any, v: float, acceleration: float, between: Any, model: Any, work: Any) -> Any:
+    """(code, s, slope) of the first root of a step: as `resolve_step`, or ACROSS + 1 where the other wall comes first.
+
+    Parameters
+    ----------
+    touches, far : whether the step may meet the wall of the launch, and the other one.
+    """
+    code, s, slope = 0, 0.0, 0.0
+    if touches:
+        code, s, slope = resolve_step(v, acceleration, between, model, work)
+    if not far or code == 2:
+        return code, s, slope
+    order, end = expanded(between, work.X, model, work), s if code == 1 else model.table.step * 17 / 16
+    over, s_far, slope_far, _depth, _bound = other_root(
+        work.X, between.z, order, end, model.rules.gap, between.noise, model.rules.ulp, work.q
+    )
+    if over == 0:
+        return code, s, slope
+    return ACROSS + 1 if over == 1 else 2, s_far, slope_far
 
 
 def is_launch(time: float, z: float) -> bool:

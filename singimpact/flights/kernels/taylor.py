@@ -4,6 +4,8 @@ The first step works on (x - c)/t^removed, where the trivial root t = 0 is gone:
 `coefficients`, `step_size`, `singular_part` and `restart` are those of linear models here; `flights.bind` puts the
 emitted recurrence of another model in their place.
 
+Of a model with two walls the polynomial of each step is looked through for both, the nearer one first.
+
 Statuses of `taylor_flight` are those of `status.Status`, and without a hit it gives the state some time before the
 horizon, for `flights.no_return`: time, x', x - c, its bound.  21 : the steps are spent; 22 : no step next to a
 singularity, with the part of f and g that is singular in place of the bound; 23 : out of the range of numbers.
@@ -11,10 +13,12 @@ singularity, with the part of f and g that is singular in place of the bound; 23
 
 from __future__ import annotations
 
+from math import inf
 from typing import Any
 
 from singimpact.flights.kernels.linear import coefficients, quiet, restart, singular_part, step_size
 from singimpact.flights.kernels.roots import first_root
+from singimpact.flights.kernels.state import ACROSS
 
 
 def taylor_flight(
@@ -52,7 +56,7 @@ def taylor_flight(
             return 23, time, u, z, noise
         if count % 64 == 63:
             ahead = quiet(z, u, W, p)
-            if ahead > 64 * h:
+            if ahead > 64 * h and not rules.gap < inf:
                 # far above the wall: a time in which no impact is possible is passed over
                 if time + ahead >= horizon:
                     return 3, time, u, z, noise
@@ -70,6 +74,9 @@ def taylor_flight(
             q[k] = X[k + removed]
         # a little past the step, so that a root on its end is not lost between two steps
         code, s, slope, depth, bound = first_root(q, order - removed, h * overlap, noise, ulp)
+        other = other_root_before(code, s, h * overlap, X, z, noise, rules, q)
+        if other[0] > 0:
+            return met_across(other, (time, u, z, noise), rules, horizon, X, order, trace, count)
         if code > 0:
             # q was (x - c)/t^removed: at its root x' = t^removed q'
             raised = 1 + zero
@@ -91,6 +98,48 @@ def taylor_flight(
         z, u, noise = restart(launch, start, time, z, u, noise + ulp * size, ulp, p)
         longest, shift, removed = 2 * h, zero, 0
     return 21, time, u, z, noise
+
+
+def other_root_before(code: Any, s: Any, h: Any, X: Any, z: Any, noise: Any, rules: Any, q: Any) -> Any:
+    """`other_root` up to s where its code is that of a root, else up to h; code 0 of a model with one wall."""
+    order = rules.order
+    if not rules.gap < inf or highest(X, z, order, h) + noise < rules.gap:
+        return 0, h, h, h, h
+    return other_root(X, z, order, s if code > 0 else h, rules.gap, noise, rules.ulp, q)
+
+
+def highest(X: Any, z: Any, n: int, h: Any) -> Any:
+    """A bound of x - c on a step."""
+    size = abs(X[n])
+    for k in range(n - 1, 0, -1):
+        size = size * h + abs(X[k])
+    return z + size * h
+
+
+def other_root(X: Any, z: Any, n: int, last: Any, gap: Any, noise: Any, ulp: Any, q: Any) -> Any:
+    """`first_root` of gap - (x - c) on (0, last]; q is scratch."""
+    q[0] = gap - z
+    for k in range(1, n + 1):
+        q[k] = -X[k]
+    return first_root(q, n, last, noise + ulp * gap, ulp)
+
+
+def met_across(root: Any, start: Any, rules: Any, horizon: Any, X: Any, order: int, trace: Any, count: int) -> Any:
+    """The result of `taylor_flight` at a root of gap - (x - c); the velocity is that of the model with x -> -x.
+
+    Parameters
+    ----------
+    root : of `other_root`, with code 1 or 2. start : time, x', x - c and its error at the start of step `count`.
+    """
+    (code, s, slope, depth, bound), (time, u, z, noise) = root, start
+    if time + s > horizon:
+        return 3, time, u, z, noise
+    if code == 2:
+        return ACROSS + 5, time + s, slope, depth, bound
+    if count + 1 < len(trace):
+        note(trace, count + 1, time + s, time * 0 + rules.gap, -slope, curvature(X, order, s))
+        trace[0, 3] = time * 0 + count + 1
+    return ACROSS, time + s, slope, time * 0, time * 0
 
 
 def note(trace: Any, row: int, time: Any, z: Any, u: Any, bend: Any) -> None:

@@ -188,7 +188,7 @@ def by_numba(flow):
 @pytest.mark.parametrize("name", [pytest.param(name, marks=pytest.mark.slow) for name in MODELS])
 def test_a_recurrence_has_the_bits_that_numba_gives_it(name):
     model = CompiledModel(Oscillator(*MODELS[name], 0, "4/5"), Allowance(10.0))
-    flow = model.emitted.flow
+    flow = model.emitted[0].flow
     code = emitted(text_of_model(Emitted(flow)), "recurrence_entry")
     takes = ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 7)
     mine = takes(ctypes.cast(loaded(code, "recurrence_entry", 7)[0], ctypes.c_void_p).value)
@@ -215,7 +215,7 @@ def test_a_recurrence_has_the_bits_that_numba_gives_it(name):
 
 def test_a_law_is_that_of_its_formula():
     model = CompiledModel(Oscillator("x", "cos(t)", 0, "-v/2 + v**2/(1 - v)/3 + v**2*(2 - v)**(1/5)"), Allowance(10.0))
-    code = emitted(text_of_model(Emitted(rho=model.emitted.rho)), LAW)
+    code = emitted(text_of_model(Emitted(rho=model.emitted[0].rho)), LAW)
     address = ctypes.cast(loaded(code, LAW, 2)[0], ctypes.c_void_p).value
     law = ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_double, ctypes.c_void_p)(address)
     for v in np.linspace(-3, -0.1, 60):

@@ -52,7 +52,7 @@ def test_models_of_one_structure_share_a_text() -> None:
         ImpactOscillator("x + k*x**3", "cos(w*t)", c, r, {"k": k, "w": w})
         for c, r, k, w in ((0, 1, 0.3, 1), (0.2, 0.5, 7, "sqrt(2)"))
     )
-    assert compiled_model(one).recurrence.machine is compiled_model(two).recurrence.machine
+    assert compiled_model(one).recurrences[0].machine is compiled_model(two).recurrences[0].machine
 
 
 def powers(least: int, most: int) -> str:

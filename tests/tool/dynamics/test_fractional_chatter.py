@@ -50,7 +50,7 @@ def test_the_limit_is_the_same_from_every_impact_and_its_error_covers_it(rho, f)
 def test_the_sum_of_speeds_is_that_of_the_speeds(rho):
     osc, speeds = model(rho, "0", "-2"), [1e-9]
     flown = compiled_model(osc)
-    plain, w = over_floats("", flown.emitted.rho)["law"], flown.rho.tolist()
+    plain, w = over_floats("", flown.emitted[0].rho)["law"], flown.rho.tolist()
     while speeds[-1] > 1e-13 and len(speeds) < 3000:
         speeds.append(plain(-speeds[-1], w))
     terms = sum_of_speeds(osc)
@@ -106,7 +106,7 @@ def test_the_threshold_separates_complete_chatter_from_lift_off(rho):
 )  # fmt: skip
 def test_compiled_and_interpreted_laws_are_the_same_to_the_bit(rho):
     flown = compiled_model(model(rho))
-    text, w = flown.emitted.rho, flown.rho
+    text, w = flown.emitted[0].rho, flown.rho
     functions = {"exp": math.exp, "abs": abs}
     exec(text, functions)
     fast, plain = numba.njit(error_model="numpy")(functions["law"]), over_floats("", text)["law"]

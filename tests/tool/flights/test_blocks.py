@@ -40,12 +40,13 @@ def test_the_same_numbers_as_in_one_piece(osc: ImpactOscillator, monkeypatch: py
     for before, call in zip(whole, calls, strict=True):
         after = call().values()
         for name, values in before.items():
-            if name not in ("notes", "certified"):
+            if name not in ("notes", "certified", "wall"):
                 same(after[name], values)
         assert after["notes"] == before["notes"]
     for before, after in zip(records, (osc.derivative(tau, v), osc.iterate(tau, v, 3)), strict=True):
         for name, values in before.items():
-            same(vars(after)[name], values)
+            if name != "wall":  # None where there is one
+                same(vars(after)[name], values)
 
 
 @pytest.mark.usefixtures("small_blocks")

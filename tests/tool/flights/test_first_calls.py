@@ -39,8 +39,8 @@ def compare(count, seed):
         compiled = compiled_model(osc)
         for name in compiled.machine.emitted.entries:
             compiled.machine.compile_here(name)
-        assert compiled.recurrence is not None
-        compiled.recurrence.compile_here()
+        (recurrence,) = compiled.recurrences
+        recurrence.compile_here()
         for state, (time, velocity, status) in zip(states, row, strict=True):
             hit = osc.first_hit(*state)
             assert int(hit.status) == status

@@ -58,9 +58,8 @@ def compiled():
         flown = compiled_model(model)
         for name in flown.machine.emitted.entries[:2]:
             flown.machine.compile_here(name)
-        for text in (flown.law, flown.recurrence):
-            if text is not None:
-                text.compile_here()
+        for text in (*flown.laws, *flown.recurrences):
+            text.compile_here()
     return MODELS
 
 
@@ -188,11 +187,11 @@ def test_a_rebound_law_may_have_any_number_of_constants():
 def test_a_law_costs_its_models_no_kernels(compiled):
     flown = compiled_model(compiled["a law"])
     assert flown.machine is compiled_model(compiled["linear"]).machine
-    assert flown.law.machine.emitted.entries == (LAW,)
+    assert flown.laws[0].machine.emitted.entries == (LAW,)
     flown.segment(0.3, 0.7, 3)
     assert flown.rho[-1] > 1
     without = interpreted(compiled["a law"])
-    without.law = machine.Called(Never(without.law.machine.emitted), without.rho)
+    without.laws[:] = [machine.Called(Never(without.laws[0].machine.emitted), without.rho)]
     rows, _ = flown.segment(0.3, 0.7, 20)
     plain, _ = without.segment(0.3, 0.7, 20)
     assert without.rho[-1] == 1
@@ -260,8 +259,8 @@ def test_models_in_taylor_steps_share_their_kernels(compiled):
     """One has its own recurrence, which kernels call."""
     duffing, other = compiled["duffing"], si.ImpactOscillator("sin(x)", "cos(2*t)", "0.3", "0.6")
     assert compiled_model(duffing).machine is compiled_model(other).machine
-    assert compiled_model(duffing).recurrence.machine is not compiled_model(other).recurrence.machine
-    compiled_model(other).recurrence.compile_here()
+    assert compiled_model(duffing).recurrences[0].machine is not compiled_model(other).recurrences[0].machine
+    compiled_model(other).recurrences[0].compile_here()
     assert compiled_model(other).flat[-1] > 1
     tau, v = np.linspace(0, 3, 40), np.linspace(0.01, 1, 40)
     kept = interpreted(other)
@@ -426,7 +425,7 @@ def test_derivatives_cost_more_than_flights_so_their_text_is_compiled_sooner(tmp
     """About as soon as their interpreted code has taken the time of compiling: 35 ms a derivative, 300 ms."""
     monkeypatch.setenv("SINGIMPACT_CACHE", str(tmp_path))
     osc = si.ImpactOscillator("x + 0.3*x**3 + 0.2*tanh(20*xdot) + sin(x)/7", "cos(1.7*t)", "0.1", "0.8")
-    text = compiled_model(osc).recurrence
+    text = compiled_model(osc).recurrences[0]
     assert not text.is_bound()
     calls = 0
     while not text.is_bound() and calls < 200:

@@ -1,0 +1,111 @@
+"""States at two walls: those of the upper wall are flown by the model with x -> -x, and their results turned back."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from singimpact.algebra.numbers import Array
+from singimpact.algebra.precision import negative
+from singimpact.flights.results import Flight
+from singimpact.flights.states import as_written
+from singimpact.inputs import InputError, refuse
+from singimpact.oscillator.model import Oscillator
+from singimpact.status import Wall, status_array
+
+NAMES = {name: wall for wall in Wall for name in (wall.name, wall.name[0], int(wall))}
+"""The wall of each of its names: "lower" or "upper", the first letter, 0 or 1."""
+
+
+def wall_codes(osc: Oscillator, wall: Any) -> Array:
+    """The walls of states as int8, of the shape that they came in; None stands for the lower wall.
+
+    Examples
+    --------
+    >>> wall_codes(Oscillator("x", "cos(t)", -1, 1, upper=1), ["lower", "u", 1]).tolist()
+    [0, 1, 1]
+    """
+    if wall is None:
+        return np.zeros((), np.int8)
+    given = np.asarray(wall, dtype=None if isinstance(wall, np.ndarray) else object)
+    codes = np.array([NAMES.get(name, -1) for name in given.ravel().tolist()], np.int8).reshape(given.shape)
+    if codes.size and (codes.min() < 0 or (osc.upper is None and codes.any())):
+        accepted = (
+            "'lower' or 'upper', or an array of them" if osc.upper is not None else "'lower': the model has one wall"
+        )
+        raise refuse("wall", wall, accepted)
+    return codes
+
+
+def at_walls(
+    fly: Callable[..., Any],
+    osc: Oscillator,
+    wall: Any,
+    columns: tuple[Any, ...],
+    out: Mapping[str, Array] | None = None,
+) -> Any:
+    """The result of `fly(model, *columns)` for states at walls, in the coordinates of the model.
+
+    Parameters
+    ----------
+    fly : gives a record of numbers, or of arrays of the broadcast shape. wall : of the states, see `wall_codes`; with
+        arrays of the caller all of one wall.
+    """
+    codes = wall_codes(osc, wall)
+    if not codes.any():
+        return fly(osc, *columns)
+    if codes.all():
+        return turned(fly(osc.mirrored, *columns), out)
+    if out is not None:
+        raise InputError("out= takes the results of states at one wall: give wall='lower' or wall='upper'")
+    names = ("tau", "v") if len(columns) == 2 else tuple(f"column {k}" for k in range(len(columns)))
+    try:
+        codes, *states = np.broadcast_arrays(codes, *map(as_written, names, columns))
+    except ValueError:
+        raise InputError(
+            f"wall of shape {codes.shape} does not broadcast with the states: give shapes that do"
+        ) from None
+    chosen = [np.flatnonzero(codes.ravel() == each) for each in Wall]
+    parts = [fly(model, *(column.ravel()[at] for column in states))
+             for model, at in zip((osc, osc.mirrored), chosen, strict=True)]  # fmt: skip
+    return _together([parts[0], turned(parts[1])], chosen, codes.shape)
+
+
+def turned(result: Any, out: Mapping[str, Array] | None = None) -> Any:
+    """A result of the model with x -> -x in the coordinates of the model; arrays of the caller are turned in place."""
+    fields = vars(result)
+    if fields.get("wall") is not None:
+        fields["wall"] = np.int8(1) - fields["wall"]
+    for impact in np.ravel(np.asarray(fields.get("certified"), dtype=object)).tolist():
+        if impact is not None:
+            vars(impact)["velocity"] = impact.velocity.negative
+    if "velocity" in fields:
+        if out is not None and "velocity" in out:
+            np.negative(out["velocity"], out=out["velocity"])
+        else:
+            fields["velocity"] = negative(fields["velocity"])
+    return result
+
+
+def _together(parts: list[Any], chosen: list[Array], shape: tuple[int, ...]) -> Any:
+    """One record of two, whose states lie at the `chosen` places of a shape."""
+    size = sum(at.size for at in chosen)
+
+    def joined(values: list[Any]) -> Any:
+        first = np.asarray(values[0])
+        whole = np.empty((size, *first.shape[1:]), first.dtype)
+        for at, value in zip(chosen, values, strict=True):
+            whole[at] = value
+        return whole.reshape(shape + first.shape[1:])
+
+    names = [name for name, value in vars(parts[0]).items() if isinstance(value, np.ndarray)]
+    fields = {name: joined([getattr(part, name) for part in parts]) for name in names}
+    fields["status"] = status_array(fields["status"])
+    if not isinstance(parts[0], Flight):
+        return type(parts[0])(**fields)
+    notes = {int(at[k]): note for at, part in zip(chosen, parts, strict=True) for k, note in part.notes.items()}
+    return type(parts[0]).made(
+        lambda name: {name: joined([getattr(part, name) for part in parts])}, **fields, notes=notes
+    )

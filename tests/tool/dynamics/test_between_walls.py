@@ -1,0 +1,91 @@
+"""Diagrams and periodic orbits between two walls: against one another, and a pitchfork that breaks a symmetry."""
+
+import numpy as np
+import pytest
+
+import singimpact as si
+from singimpact.inputs import InputError
+from singimpact.status import Wall
+
+PAIR = si.linear("2.8", "-0.5", "0.8", damping="0.05", amplitude=4, upper="0.5")
+ROUNDING = 1e-6
+
+
+@pytest.mark.parametrize("direction", [None, "up"])
+def test_a_diagram_has_the_periodic_orbits_of_both_walls(direction):
+    found = si.bifurcation(PAIR, "amplitude", ("3.6", "4.4"), 5, direction=direction)
+    assert found.settled.all()
+    names = [run.name for run in found.attractors]
+    assert names.count("(2, 1) orbit") >= 2
+    for value, events, name in zip(found.values, found.events, names, strict=True):
+        if name != "(2, 1) orbit":
+            continue
+        orbits = [orbit for orbit in PAIR.replace(amplitude=value).periodic("lu", 1) if orbit.stable]
+        own = {round(float(v), 6) for orbit in orbits for v in np.where(orbit.wall == 1, -orbit.v, orbit.v)}
+        shown = {round(float(v), 6) for v in events[:, 1]}
+        assert shown <= own
+        assert min(shown) < 0 < max(shown)
+
+
+def test_a_diagram_runs_over_the_place_and_the_restitution_of_the_upper_wall():
+    found = si.bifurcation(PAIR, "upper", ("0.4", "0.6"), 3)
+    assert found.settled.any()
+    for value, events in zip(found.values[found.settled], found.events[found.settled], strict=True):
+        orbit = PAIR.replace(upper=value).orbit(0.0, 0.1, 2000)
+        assert np.allclose(np.sort(events[-2:, 1]), np.sort(orbit.speeds[-2:]), atol=ROUNDING)
+    assert np.isfinite(si.bifurcation(PAIR, "upper_restitution", ("0.5", "0.9"), 3).values).all()
+    with pytest.raises(InputError, match="upper"):
+        si.bifurcation(si.linear(2, 0, "0.5"), "upper", (1, 2), 3)
+
+
+def test_a_number_that_the_model_does_not_name_keeps_the_second_wall():
+    free = si.linear("2.8", "-0.5", "0.8", upper="0.5")
+    found = si.bifurcation(free, "amplitude", (4, 5), 2)
+    assert (found.events[:, :, 1] < 0).any()
+
+
+def test_symmetric_orbits_lose_their_stability_to_a_pair_of_mirror_images():
+    duffing = si.ImpactOscillator("x + x**3 + 0.1*xdot", "5*cos(1.7*t)", "-0.5", "0.7", upper="0.5")
+    orbits = duffing.periodic("lluu", 1)
+    lone = [orbit for orbit in orbits if not orbit.symmetric]
+    assert any(orbit.symmetric and orbit.multipliers[0] > 1 for orbit in orbits)
+    assert [orbit.stable for orbit in lone] == [True, True]
+    first, second = lone
+    # half a period later, on the other walls
+    half = first.period / 2
+    shift = next(k for k in range(4) if np.allclose(np.roll(second.v, k), first.v, rtol=1e-9))
+    assert (np.roll(second.wall, shift) != first.wall).all()
+    late = (np.roll(second.tau, shift) - first.tau - half) / first.period
+    assert np.abs(late - np.rint(late)).max() < 1e-9
+
+
+@pytest.mark.parametrize("word", ["lu", "lul", "lluu"])
+def test_states_of_an_orbit_are_mapped_to_one_another(word):
+    walls = {"upper": "0.6", "upper_restitution": "0.8"}
+    osc = si.ImpactOscillator("x + x**3 + 0.1*xdot", "5*cos(1.7*t)", "-0.5", "0.7", **walls)
+    for orbit in osc.periodic(word, 1):
+        step = osc.impact_map(orbit.tau, orbit.v, wall=orbit.wall)
+        assert (step.wall == np.roll(orbit.wall, -1)).all()
+        assert np.allclose(step.v, np.roll(orbit.v, -1), rtol=1e-9)
+        D = np.eye(2)
+        for tau, v, wall in zip(orbit.tau, orbit.v, orbit.wall, strict=True):
+            D = osc.derivative(float(tau), float(v), wall=int(wall)).matrix @ D
+        sizes = (np.sort(np.abs(each)) for each in (np.linalg.eigvals(D), orbit.multipliers))
+        assert np.allclose(*sizes, rtol=1e-5, atol=1e-7)
+        assert {Wall(int(wall)).name[0] for wall in orbit.wall} == set(word)
+
+
+@pytest.mark.parametrize("word", ["", "lx", 2, None])
+def test_a_word_has_the_letters_of_the_walls(word):
+    with pytest.raises(InputError, match="letters l and u"):
+        PAIR.periodic(word, 1)
+
+
+def test_an_orbit_is_found_from_a_start():
+    osc = PAIR
+    stable = next(orbit for orbit in osc.periodic("lu", 1) if orbit.stable)
+    lower = int(np.flatnonzero(stable.wall == 0)[0])
+    (again,) = osc.periodic("lu", 1, start=(stable.tau[lower] + 1e-3, stable.v[lower] * 1.001))
+    assert np.allclose(again.v, stable.v, rtol=1e-9)
+    with pytest.raises(InputError, match="start"):
+        osc.periodic("lu", 1, start="here")
