@@ -360,9 +360,7 @@ def kept(output: str | Path | None, key: str | None) -> InMemory:
     if output is None or key is None:
         return InMemory()
     path = Path(output)
-    if path.suffix == ".zarr":
-        return ZarrStore(path, key)
-    return NpzFile(path, key)
+    return ZarrStore(path, key) if path.suffix == ".zarr" else NpzFile(path, key)
 
 
 def require_zarr(path: Path) -> Any:

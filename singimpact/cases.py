@@ -52,10 +52,7 @@ POOL = PoolSettings()
 
 @checked_keywords
 def sweep(
-    function: Callable[[Any], Any],
-    cases: Iterable[Any],
-    executor: Any = None,
-    output: str | Path | None = None,
+    function: Callable[[Any], Any], cases: Iterable[Any], executor: Any = None, output: str | Path | None = None
 ) -> Any:
     """function(case) for every case, in the order of the cases.
 

@@ -1,14 +1,34 @@
 """Names that a room hands on, each loaded from its file when it is first used, and functions as methods (`Study`).
 
+So are `flint` and `sympy`: a session in doubles needs neither, and they take 20 ms and 0.3 s to load.
+
 A room's own files import one another by file; whoever stands outside (the public names, the tests) asks the room.
 """
 
 from collections.abc import Callable, Mapping
 from importlib import import_module
 from types import MethodType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-__all__ = ["Study", "names_of", "public"]
+__all__ = ["Study", "flint", "names_of", "public", "sympy"]
+
+
+class _OnDemand:
+    """A module that is loaded when one of its names is first used; later uses find the name in the instance."""
+
+    def __init__(self, name: str) -> None:
+        self._module = name
+
+    def __getattr__(self, name: str) -> Any:
+        value = self.__dict__[name] = getattr(import_module(self._module), name)
+        return value
+
+
+if TYPE_CHECKING:
+    import flint
+    import sympy
+else:
+    flint, sympy = _OnDemand("flint"), _OnDemand("sympy")
 
 
 def names_of(room: str, files: Mapping[str, str]) -> Callable[[str], Any]:

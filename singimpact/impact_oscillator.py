@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from math import inf
 from typing import TYPE_CHECKING, Any
 
@@ -10,8 +10,17 @@ import numpy as np
 
 from singimpact.algebra.numbers import compare, constant
 from singimpact.handed_on import Study
-from singimpact.inputs import InputError, checked_keywords, checked_methods, refuse, takes_two_walls, whole
+from singimpact.inputs import (
+    InputError,
+    checked_keywords,
+    checked_methods,
+    refuse,
+    takes_two_walls,
+    whole,
+    with_walls,
+)
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.moving_number import UPPER
 
 if TYPE_CHECKING:
     from pathlib import Path as FilePath
@@ -26,6 +35,12 @@ if TYPE_CHECKING:
     from singimpact.flights.orbits import Ends as Iterates
     from singimpact.flights.results import Derivative, Flight, Step
     from singimpact.oscillator.shaken_wall import ShakenWall
+
+
+def _at_walls(method: Callable[..., Any], osc: Oscillator, wall: Any, states: tuple[Any, ...], options: Any) -> Any:
+    from singimpact.flights.walls import shared_out
+
+    return shared_out(method, osc, wall, states, options)
 
 
 @checked_methods
@@ -47,7 +62,7 @@ class ImpactOscillator(Oscillator):
     tangency_points, classify, grown_gamma, release_map = Study(), Study(), Study(), Study()
     border_orbits, transitions, explore, selftest = Study(), Study(), Study(), Study()
 
-    @takes_two_walls
+    @with_walls(_at_walls)
     def first_hit(
         self,
         tau: Any,
@@ -59,7 +74,6 @@ class ImpactOscillator(Oscillator):
         steps: int | None = None,
         out: Mapping[str, Any] | None = None,
         threads: int | None = None,
-        wall: Any = None,
     ) -> Flight:
         """The first hit F of the wall for flights from (tau, v).
 
@@ -87,17 +101,13 @@ class ImpactOscillator(Oscillator):
         from singimpact.flights.impact_map import first_hit
 
         if threads is None:
-            return first_hit(
-                self, tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps, out=out, wall=wall
-            )
+            return first_hit(self, tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps, out=out)
         from singimpact.flights.interruptible import on_threads
 
         with on_threads(threads):
-            return self.first_hit(
-                tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps, out=out, wall=wall
-            )
+            return first_hit(self, tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps, out=out)
 
-    @takes_two_walls
+    @with_walls(_at_walls)
     def impact_map(
         self,
         tau: Any,
@@ -109,7 +119,6 @@ class ImpactOscillator(Oscillator):
         steps: int | None = None,
         out: Mapping[str, Any] | None = None,
         threads: int | None = None,
-        wall: Any = None,
     ) -> Step:
         """The impact map G: the next impact of flights from (tau, v), and the velocity after it.
 
@@ -131,15 +140,11 @@ class ImpactOscillator(Oscillator):
         from singimpact.flights.impact_map import impact_map
 
         if threads is None:
-            return impact_map(
-                self, tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps, out=out, wall=wall
-            )
+            return impact_map(self, tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps, out=out)
         from singimpact.flights.interruptible import on_threads
 
         with on_threads(threads):
-            return self.impact_map(
-                tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps, out=out, wall=wall
-            )
+            return impact_map(self, tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps, out=out)
 
     def enclosed_impact(
         self, tau: Any, v: Any, *, radii: Mapping[str, Any] | None = None, digits: int = 30, horizon: Any = None
@@ -484,14 +489,13 @@ def linear(
     amplitude: Any = 1,
     phase: Any = 0,
     upper: Any = None,
-    upper_restitution: Any = None,
 ) -> ImpactOscillator:
     """x'' + damping x' + stiffness x = amplitude cos(omega t + phase); terms with default values are left out.
 
     Parameters
     ----------
     omega, clearance, restitution, damping, stiffness, amplitude, phase : numbers; omega > 0.
-    upper, upper_restitution : of a second wall, as for `ImpactOscillator`.
+    upper : place of a second wall, whose restitution is that of the first; or (upper, upper_restitution).
 
     Examples
     --------
@@ -505,7 +509,7 @@ def linear(
     force = ("stiffness*x" if "stiffness" in changed else "x") + (" + damping*xdot" if "damping" in changed else "")
     wave = "cos(omega*t + phase)" if "phase" in changed else "cos(omega*t)"
     forcing = f"amplitude*{wave}" if "amplitude" in changed else wave
-    above = {"upper": upper, "upper_restitution": upper_restitution}
+    above = dict(zip(UPPER, upper if isinstance(upper, tuple) else (upper,), strict=False))
     return ImpactOscillator(force, forcing, clearance, restitution, {"omega": omega, **changed}, **above)
 
 

@@ -162,10 +162,10 @@ def bifurcation(
     Returns
     -------
     Bifurcation : `.values`, shape (points,), and `.events`, shape (points, kept, 3): phase, v (-v at an upper wall)
-        and 1 where chatter has ended; nan where an orbit had fewer; without a period the time since the event before stands in place of the
-        phase. `.settled`, shape (points,): whether the events repeat, or where the forcing never does, whether a
-        neighbour comes to the orbit; `.attractors` have the names of basins. `si.plot` draws it, `.to_csv(file)` writes
-        it.
+        and 1 where chatter has ended; nan where an orbit had fewer; without a period the time since the event before
+        stands in place of the phase. `.settled`, shape (points,): whether the events repeat, or where the forcing never
+        does, whether a neighbour comes to the orbit; `.attractors` have the names of basins. `si.plot` draws it,
+        `.to_csv(file)` writes it.
 
     Raises
     ------

@@ -289,7 +289,7 @@ IN_PLAIN = {
 }  # fmt: skip
 
 
-CHAIN = ("plain", "sentences", "checked_identities", "checking")
+CHAIN = ("plain", "sentences", "checking")
 
 
 def without(condition, instead, name):

@@ -59,9 +59,8 @@ def commands() -> str:
 
 def figures(place: Path, steps: Steps) -> str:
     """The paper's figures with what they show, and the claims that they illustrate; the pictures go beside the page."""
-    from singimpact.paper.figures import BEYOND, FIGURES
+    from singimpact.paper.figures import BEYOND, FIGURES, kept_picture
     from singimpact.paper.figures.figure_rendering import drawn
-    from singimpact.paper.figures.registry import kept_picture
 
     parts = ["# The figures", "", "Drawn from computed data by `singimpact figure all -o FOLDER`; those beyond the "
              "paper, B1, B2, ..., by `singimpact figure beyond -o FOLDER`.", ""]  # fmt: skip

@@ -12,6 +12,7 @@ from fractions import Fraction
 from typing import Any
 
 from singimpact.algebra.expressions import Expression, Root, evaluate
+from singimpact.handed_on import flint
 
 ZERO, ONE = Fraction(0), Fraction(1)
 Operation = tuple[str, tuple[Any, ...]]
@@ -234,8 +235,6 @@ class Program:
 
 
 def _done(kind: str, parts: tuple[Any, ...], done: list[Any], values: Mapping[str, Any]) -> Any:
-    import flint
-
     match kind:
         case "+":
             return done[parts[0]] + done[parts[1]]
@@ -265,8 +264,6 @@ def call(function: str, u: Any) -> Any:
     >>> beside_the_cut.log().is_finite(), call("log", beside_the_cut).is_finite()
     (True, False)
     """
-    import flint
-
     if not isinstance(u, flint.arb | flint.acb | flint.arb_series):
         u = flint.arb(u)
     if function == "inverse":
@@ -283,30 +280,24 @@ def call(function: str, u: Any) -> Any:
     return getattr(u, function)()
 
 
-def off_the_cut(u: Any) -> Any:
+def off_the_cut(u: flint.acb) -> flint.acb:
     """A complex ball in the right half plane; nan instead of any other: flint's log and sqrt are finite on the cut."""
-    import flint
-
     return u if u.real > 0 else flint.acb(flint.arb.nan())
 
 
-def off_the_cuts_of_atan(u: Any) -> Any:
+def off_the_cuts_of_atan(u: flint.acb) -> flint.acb:
     """A complex ball that meets no cut of atan, which lie beyond i and -i; nan instead of any other."""
-    import flint
-
     return u if abs(u.imag) < 1 or u.real > 0 or u.real < 0 else flint.acb(flint.arb.nan())
 
 
 def _of_one_sign(function: str, u: Any) -> Any:
     """|u| as u or -u, or its slope: analytic where the real part keeps its sign, nan elsewhere."""
-    import flint
-
     part = u.real if isinstance(u, flint.acb) else u[0] if isinstance(u, flint.arb_series) else u
     sign = 1 if part > 0 else -1 if part < 0 else flint.arb.nan()
     return flint.arb(sign) if function == "sign" else u * sign
 
 
-def _tanh(u: Any) -> Any:
+def _tanh(u: flint.arb_series) -> flint.arb_series:
     """Of a series, by the exponential that is not large."""
     above = u[0].mid() > 0
     # e^{-2|u|} does not overflow, and its difference from 1 keeps its digits where |u| is large

@@ -1,5 +1,7 @@
 """Certified enclosures: the ring of real balls (python-flint's arb), and simple zeros of functions refined in it."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
@@ -9,6 +11,7 @@ from typing import Any
 from singimpact.algebra.expressions import BOUND, Expression, Root, evaluate
 from singimpact.algebra.precision import Ladder, balls_at
 from singimpact.algebra.solving import newton_in_balls
+from singimpact.handed_on import flint
 
 BITS_A_DIGIT = 3.3219281  # log2 10, rounded up
 BITS = 128  # of the balls that isolate zeros; far more than the least width of a piece needs
@@ -28,57 +31,47 @@ class Balls:
 
     bits: int
 
-    def element(self, value: Any) -> Any:
+    def element(self, value: Any) -> flint.arb:
         """A ball, or a rational of Python."""
-        import flint
-
         if isinstance(value, flint.arb):
             return value
         if isinstance(value, int | Fraction) and not isinstance(value, bool):
             return self.rational(Fraction(value))
         raise TypeError(f"{value!r} is not a ball")
 
-    def evaluate(self, tree: Expression, values: Mapping[str, Any]) -> Any:
+    def evaluate(self, tree: Expression, values: Mapping[str, flint.arb]) -> Any:
         """The ball of a tree; `values` are balls."""
         with balls_at(self.bits):
             return evaluate(tree, values, self)
 
-    def rational(self, value: Fraction) -> Any:
-        import flint
-
+    def rational(self, value: Fraction) -> flint.arb:
         with balls_at(self.bits):
             return flint.arb(flint.fmpq(value.numerator, value.denominator))
 
-    def interval(self, low: Fraction, high: Fraction) -> Any:
+    def interval(self, low: Fraction, high: Fraction) -> flint.arb:
         """The smallest ball around [low, high] at this precision."""
         with balls_at(self.bits):
             return self.rational(low).union(self.rational(high))
 
-    def unknown(self) -> Any:
+    def unknown(self) -> flint.arb:
         """The ball of all numbers."""
-        import flint
-
         return flint.arb("nan")
 
-    def pi(self) -> Any:
-        import flint
-
+    def pi(self) -> flint.arb:
         with balls_at(self.bits):
             return flint.arb.pi()
 
-    def power(self, base: Any, exponent: Fraction) -> Any:
-        if exponent.denominator == 1:
-            return base ** int(exponent)
-        return base ** self.rational(exponent)
+    def power(self, base: flint.arb, exponent: Fraction) -> flint.arb:
+        return base ** (int(exponent) if exponent.denominator == 1 else self.rational(exponent))
 
-    def call(self, function: str, argument: Any) -> Any:
+    def call(self, function: str, argument: flint.arb) -> flint.arb:
         return abs(argument) if function == "abs" else getattr(argument, function)()
 
-    def root(self, tree: Root) -> Any:
+    def root(self, tree: Root) -> flint.arb:
         return ball_of(tree, self.bits)
 
 
-def as_rational(ball: Any) -> Fraction:
+def as_rational(ball: flint.arb) -> Fraction:
     """The midpoint of a ball, exactly."""
     mantissa, exponent = ball.mid().man_exp()
     return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
@@ -103,8 +96,7 @@ def derivatives(tree: Expression, variable: str, at: Any, order: int, ring: Any)
     from singimpact.algebra.jets import JetSpace
 
     space = JetSpace((variable,), order, ring)
-    step = space.generators()[0] if order else space.jet({})
-    jet = space.evaluate(tree, {variable: space.constant(at) + step})
+    jet = space.evaluate(tree, {variable: space.constant(at) + (space.generators()[0] if order else space.jet({}))})
     return [jet.coefficient((k,)) for k in range(order + 1)]
 
 
@@ -123,7 +115,7 @@ def _coefficient(taylor: Callable[..., list[Any]], order: int, times: int, at: A
     return taylor(at=at, order=order)[order] * times
 
 
-def refined(tree: Expression, variable: str, zero: Zero, bits: int, order: int = 0) -> Any:
+def refined(tree: Expression, variable: str, zero: Zero, bits: int, order: int = 0) -> flint.arb:
     """A ball of about this many bits around the simple zero in a piece, by interval Newton steps."""
     low, high, first = _monotone(tree, variable, zero, order)
     most = max(bits + 64, first)
@@ -142,7 +134,7 @@ def refined(tree: Expression, variable: str, zero: Zero, bits: int, order: int =
 
 
 @lru_cache(maxsize=256)
-def ball_of(tree: Root, bits: int) -> Any:
+def ball_of(tree: Root, bits: int) -> flint.arb:
     """A ball of about this many bits around the number that a root is.
 
     Examples
@@ -151,8 +143,8 @@ def ball_of(tree: Root, bits: int) -> Any:
     >>> print(ball_of(parse("root(u**2 - 2, 1, 2)"), 100).str(20, radius=False))
     1.4142135623730950488
     """
-    rising = sign_at(tree.function, BOUND, tree.high, 0)
-    return refined(tree.function, BOUND, Zero(tree.low, tree.high, rising), bits)
+    zero = Zero(tree.low, tree.high, sign_at(tree.function, BOUND, tree.high, 0))
+    return refined(tree.function, BOUND, zero, bits)
 
 
 def _monotone(tree: Expression, variable: str, zero: Zero, order: int) -> tuple[Fraction, Fraction, int]:
@@ -173,7 +165,7 @@ def _monotone(tree: Expression, variable: str, zero: Zero, order: int) -> tuple[
         low, high = (low, middle) if beyond else (middle, high)
 
 
-def _ends(ball: Any) -> tuple[Fraction, Fraction]:
+def _ends(ball: flint.arb) -> tuple[Fraction, Fraction]:
     with balls_at(END_BITS):
         low, high = ball.lower(), ball.upper()
     return as_rational(low), as_rational(high)

@@ -14,6 +14,7 @@ from typing import Any
 
 import sympy
 
+from singimpact.algebra.derivations import terms_of
 from singimpact.algebra.gathering import Certificate as Certificate, collected as collected, established
 
 Box = Mapping[Any, tuple[Any, Any]]
@@ -80,8 +81,8 @@ def positive_in(expression: Any, box: Box) -> bool:
     data = {
         "kind": "positive",
         "variables": [str(name) for name in box],
-        "numerator": _data(above * scale, list(box)),
-        "denominator": _data(below * scale, list(box)),
+        "numerator": terms_of(above * scale, list(box)),
+        "denominator": terms_of(below * scale, list(box)),
         "sign": 1,
     }
     proof["expansion"] = [[key, str(Fraction(value) * scale**2)] for key, value in proof["expansion"]]
@@ -134,12 +135,6 @@ def _line(low: Any, high: Any, degree: int, more: int) -> list[dict[int, Fractio
 
 def _quotient(expression: Any) -> tuple[Any, Any]:
     return sympy.fraction(sympy.cancel(sympy.together(sympy.sympify(expression))))  # type: ignore[no-any-return]
-
-
-def _data(expression: Any, variables: Sequence[Any]) -> list[Any]:
-    """A polynomial with whole coefficients as [exponents, coefficient] pairs."""
-    terms = sympy.Poly(expression, *variables, domain="QQ").terms()
-    return [[list(key), int(value) if value.q == 1 else str(value)] for key, value in terms if value]
 
 
 def _seen_wrong(poly: Any, box: Box) -> bool:
@@ -218,16 +213,17 @@ def sign_chain(expression: Any, variable: Any, signs: Sequence[tuple[Any, int]],
             raise ArithmeticError(f"no certificate was found for the sign of {expression} at {variable} = {at}")
         places.append({"at": str(at), "sign": sign} | {name: proof[name] for name in ("degree", "raised", "expansion")})
     gaps = [[a["at"], b["at"]] for a, b in pairwise(places) if a["sign"] != b["sign"]]
-    data = {
-        "kind": "chain",
-        "variables": [str(variable), *map(str, box)],
-        "polynomial": _data(poly.as_expr(), [variable, *box]),
-        "box": [[str(low), str(high)] for low, high in box.values()],
-        "places": places,
-        "roots": gaps,
-        "all": len(gaps) == poly.degree(variable),
-    }
-    return established(data)
+    return established(
+        {
+            "kind": "chain",
+            "variables": [str(variable), *map(str, box)],
+            "polynomial": terms_of(poly.as_expr(), [variable, *box]),
+            "box": [[str(low), str(high)] for low, high in box.values()],
+            "places": places,
+            "roots": gaps,
+            "all": len(gaps) == poly.degree(variable),
+        }
+    )
 
 
 def _value_or_leading(expression: Any, variable: Any, at: Any) -> Any:
@@ -252,11 +248,11 @@ def value_at(expression: Any, variable: Any, point: Any) -> Any:
     data = {
         "kind": "value",
         "variables": [str(name) for name in variables],
-        "numerator": _data(above, variables),
-        "denominator": _data(below, variables),
+        "numerator": terms_of(above, variables),
+        "denominator": terms_of(below, variables),
         "index": variables.index(variable),
         "at": str(point),
-        "value": "infinite" if limit == sympy.zoo else [_data(side, variables) for side in _quotient(limit)],
+        "value": "infinite" if limit == sympy.zoo else [terms_of(side, variables) for side in _quotient(limit)],
     }
     if not established(data):
         raise ArithmeticError(f"the value of {expression} at {variable} = {point} is not certified")
@@ -320,14 +316,17 @@ def identical(left: Any, right: Any) -> bool:
     if [sympy.expand(polynomial) for polynomial in sides[0]] == [sympy.expand(polynomial) for polynomial in sides[1]]:
         return False
     variables = [*names, w]
-    data = {
-        "kind": "identity",
-        "variables": [str(name) for name in variables],
-        "left": [_data(polynomial, variables) for polynomial in sides[0]],
-        "right": [_data(polynomial, variables) for polynomial in sides[1]],
-        "relation": [_data(polynomial, variables) for polynomial in _related(sides, relation, w)] if root else None,
-    }
-    return established(data)
+    return established(
+        {
+            "kind": "identity",
+            "variables": [str(name) for name in variables],
+            "left": [terms_of(polynomial, variables) for polynomial in sides[0]],
+            "right": [terms_of(polynomial, variables) for polynomial in sides[1]],
+            "relation": [terms_of(polynomial, variables) for polynomial in _related(sides, relation, w)]
+            if root
+            else None,
+        }
+    )
 
 
 def _related(sides: list[Any], relation: Any, w: Any) -> tuple[Any, Any, Any]:
@@ -337,5 +336,4 @@ def _related(sides: list[Any], relation: Any, w: Any) -> tuple[Any, Any, Any]:
     if difference.degree() < 2:
         return sympy.Integer(1), sympy.Integer(0), relation
     cofactor, _ = sympy.pdiv(difference, sympy.Poly(relation, w))
-    lead = sympy.Poly(relation, w).LC()
-    return lead ** (difference.degree() - 1), cofactor.as_expr(), relation
+    return sympy.Poly(relation, w).LC() ** (difference.degree() - 1), cofactor.as_expr(), relation

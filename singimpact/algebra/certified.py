@@ -7,6 +7,7 @@ from fractions import Fraction
 from types import SimpleNamespace
 from typing import Any
 
+from singimpact.algebra.numbers import exact
 from singimpact.algebra.precision import bits_at, digits_at, for_user, negative
 
 
@@ -58,7 +59,7 @@ class Certified:
         --------
         >>> import mpmath
         >>> Certified(mpmath.mpf("0.5"), mpmath.mpf("1e-16"), 15).negative
-        Certified(-0.5 +- 1.0e-16)
+        Certified(-0.500000000000000 +- 1.0e-16)
         """
         return Certified(negative(self.value), self.radius, self.digits)
 
@@ -72,8 +73,6 @@ class Certified:
         >>> third.contains(Fraction(1, 3)), third.contains(0.3)
         (True, False)
         """
-        from singimpact.algebra.numbers import exact
-
         return abs(exact("value", self.value) - exact("number", number)) <= exact("radius", self.radius)
 
 
@@ -116,8 +115,6 @@ def from_ends(low: Fraction, high: Fraction, digits: int) -> Certified:
     middle, half = (low + high) / 2, (high - low) / 2
     with digits_at(digits + 10) as mp:
         value = mp.mpf(middle.numerator) / middle.denominator
-    from singimpact.algebra.numbers import exact
-
     off = half + abs(exact("value", value) - middle)
     with bits_at(64) as mp:
         radius = mp.mpf(off.numerator) / off.denominator * (1 + mp.mpf(2) ** -50)

@@ -55,16 +55,17 @@ def substitution(
     parts += [expression for side in sides for expression in (side.outer, *side.images, *side.images.values())]
     names = sorted({name for expression in parts for name in sympy.sympify(expression).free_symbols} - {last}, key=str)
     variables = [*names, *([last] if last is not None else [])]
-    data = {
-        "kind": "composed",
-        "variables": [str(name) for name in variables],
-        "weights": [int(name in small) for name in variables],
-        "order": order,
-        "left": _side(sides[0], variables),
-        "right": _side(sides[1], variables),
-        "relation": None if relation is None else _related(sides, relation, last, order, small, variables),
-    }
-    left_behind(data)
+    left_behind(
+        {
+            "kind": "composed",
+            "variables": [str(name) for name in variables],
+            "weights": [int(name in small) for name in variables],
+            "order": order,
+            "left": _side(sides[0], variables),
+            "right": _side(sides[1], variables),
+            "relation": None if relation is None else _related(sides, relation, last, order, small, variables),
+        }
+    )
 
 
 def _used(side: At) -> At:
@@ -128,16 +129,6 @@ def _fraction(side: At) -> tuple[Any, Any]:
     return sympy.expand(one * four), sympy.expand(three * two)
 
 
-def equation_data(
-    acceleration: Iterable[Any], force: Mapping[tuple[int, int], Any], variables: Sequence[Any]
-) -> dict[str, Any]:
-    """The equation of motion as data: a = sum a_n (tau - tau_*)^n, f - f(c, 0) = sum f_ik x^i x'^k."""
-    return {
-        "acceleration": [terms_of(part, variables) for part in acceleration],
-        "force": [[list(pair), terms_of(part, variables)] for pair, part in sorted(force.items())],
-    }
-
-
 def motion(
     variables: Sequence[Any],
     height: Any,
@@ -166,17 +157,20 @@ def motion(
     parts = [height, *acceleration, *force.values(), *(series for series in (launch, landing) if series is not None)]
     names = {name for series in parts for name in sympy.sympify(series).free_symbols} - set(variables)
     every = [*variables, *sorted(names, key=str)]
-    data = {
-        "kind": "motion",
-        "variables": [str(name) for name in every],
-        "weights": [1, 1, 1, *[0] * len(names)],
-        "order": order,
-        "height": terms_of(height, every),
-        **equation_data(acceleration, force, every),
-        "launch": None if launch is None else terms_of(launch, every),
-        "landing": None if landing is None else terms_of(landing, every),
-    }
-    left_behind(data)
+    left_behind(
+        {
+            "kind": "motion",
+            "variables": [str(name) for name in every],
+            "weights": [1, 1, 1, *[0] * len(names)],
+            "order": order,
+            "height": terms_of(height, every),
+            # a = sum a_n (tau - tau_*)^n, f - f(c, 0) = sum f_ik x^i x'^k
+            "acceleration": [terms_of(jet, every) for jet in acceleration],
+            "force": [[list(pair), terms_of(jet, every)] for pair, jet in sorted(force.items())],
+            "launch": None if launch is None else terms_of(launch, every),
+            "landing": None if landing is None else terms_of(landing, every),
+        }
+    )
 
 
 def flight(contact: Any, order: int, rise: Mapping[Any, Any], launch: Any, landing: Any) -> None:
@@ -192,28 +186,30 @@ def flight(contact: Any, order: int, rise: Mapping[Any, Any], launch: Any, landi
     ArithmeticError : it is not so.
     """  # noqa: E501
     names = tuple(getattr(contact.ring, "names", ()))
-    first = ["z", "sigma", "t"]
 
     def data_of(terms: Mapping[tuple[int, ...], Any]) -> list[Any]:
-        found = []
-        for key, value in terms.items():
-            head = (0,) * (3 - len(key)) + tuple(key)
-            found += [[[*head, *tail], str(part)] for tail, part in _scalars(value, len(names))]
-        return found
+        return [
+            [[*(0,) * (3 - len(key)), *key, *tail], str(part)]
+            for key, value in terms.items()
+            for tail, part in _scalars(value, len(names))
+        ]
 
-    top = max(contact.a, default=0)
-    data = {
-        "kind": "flight",
-        "variables": [*first, *names],
-        "weights": [0, 1, 1, *[0] * len(names)],
-        "order": order,
-        "rise": data_of(rise),
-        "acceleration": [data_of({(0, 0, 0): contact.a[n]}) if n in contact.a else [] for n in range(top + 1)],
-        "force": [[list(pair), data_of({(0, 0, 0): value})] for pair, value in sorted(contact.f.items())],
-        "launch": data_of(launch),
-        "landing": data_of(landing),
-    }
-    left_behind(data)
+    left_behind(
+        {
+            "kind": "flight",
+            "variables": ["z", "sigma", "t", *names],
+            "weights": [0, 1, 1, *[0] * len(names)],
+            "order": order,
+            "rise": data_of(rise),
+            "acceleration": [
+                data_of({(0, 0, 0): contact.a[n]}) if n in contact.a else []
+                for n in range(max(contact.a, default=0) + 1)
+            ],
+            "force": [[list(pair), data_of({(0, 0, 0): value})] for pair, value in sorted(contact.f.items())],
+            "launch": data_of(launch),
+            "landing": data_of(landing),
+        }
+    )
 
 
 def _scalars(value: Any, size: int) -> Iterable[tuple[tuple[int, ...], Fraction]]:

@@ -9,7 +9,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import reduce
+from operator import add as add_, mul
 from typing import Any, Protocol
+
+from singimpact.handed_on import flint
 
 FUNCTIONS = ("sin", "cos", "tan", "exp", "log", "sqrt", "tanh", "atan", "abs")
 
@@ -192,8 +196,6 @@ def _digits(value: int) -> str:
     try:
         return str(value)
     except ValueError:  # Python writes no more than 4300
-        import flint
-
         return str(flint.fmpz(value))
 
 
@@ -234,8 +236,8 @@ def multiply(*factors: Expression) -> Expression:
 
 def _is_short(left: Fraction, right: Fraction) -> bool:
     """Whether sum and product of two rationals are written as one number."""
-    bits = sum(whole.bit_length() for each in (left, right) for whole in (each.numerator, each.denominator))
-    return bits <= FOLDING.rational
+    wholes = (left.numerator, left.denominator, right.numerator, right.denominator)
+    return sum(whole.bit_length() for whole in wholes) <= FOLDING.rational
 
 
 def power(base: Expression, exponent: Expression) -> Expression:
@@ -333,15 +335,9 @@ def evaluate(tree: Expression, values: Mapping[str, Any], ring: Ring) -> Any:
         case Name(name):
             return values[name]
         case Sum(terms):
-            total = evaluate(terms[0], values, ring)
-            for term in terms[1:]:
-                total = total + evaluate(term, values, ring)
-            return total
+            return reduce(add_, (evaluate(term, values, ring) for term in terms))
         case Product(factors):
-            total = evaluate(factors[0], values, ring)
-            for factor in factors[1:]:
-                total = total * evaluate(factor, values, ring)
-            return total
+            return reduce(mul, (evaluate(factor, values, ring) for factor in factors))
         case Power(base, Number(exponent)):
             return ring.power(evaluate(base, values, ring), exponent)
         case Power(base, general):

@@ -3,7 +3,7 @@
 Nothing here makes a certificate (`certificates`, `derivations`) or checks one by itself (`checking`).
 """
 
-from collections.abc import Callable, Hashable, Iterable, Iterator
+from collections.abc import Callable, Hashable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import wraps
@@ -63,13 +63,6 @@ def _said(certificate: Certificate) -> str:
         return f"its data are damaged, {error}"
 
 
-def _handed_on(certificates: Iterable[Certificate]) -> None:
-    """Certificates that were accepted before join the open collection, each once."""
-    found = _OPEN.get()
-    if found is not None:
-        found += [each for each in certificates if each not in found]
-
-
 class Remembered:
     """The results of a derivation, each with the certificates that were left while it ran.
 
@@ -94,7 +87,9 @@ class Remembered:
             else:
                 stored = derive(), None
             self._results[key] = stored
-        _handed_on(stored[1] or ())
+        collection = _OPEN.get()
+        if collection is not None:  # certificates that were accepted before join it, each once
+            collection += [proof for proof in stored[1] or () if proof not in collection]
         return stored[0]
 
 

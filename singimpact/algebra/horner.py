@@ -10,6 +10,9 @@ from typing import Any
 
 import numpy as np
 
+Array = np.ndarray[Any, np.dtype[np.float64]]
+Side = Array | float
+Pair = tuple[Side, Side]
 SPLIT = 2.0**27 + 1  # a double as two halves whose products are exact
 
 
@@ -46,12 +49,12 @@ class Horner:
     def _row(row: Mapping[int, Any]) -> list[tuple[float, float]]:
         return [_two_doubles(row.get(i, 0)) for i in range(max(row, default=0), -1, -1)]
 
-    def __call__(self, x: Any, y: Any) -> Any:
+    def __call__(self, x: Any, y: Any) -> Array:
         """The values at broadcast arrays of doubles."""
         first, second = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
         return self._twice(first, second) if self.compensated else self._once(first, second)
 
-    def _once(self, first: Any, second: Any) -> Any:
+    def _once(self, first: Array, second: Array) -> Array:
         total, row = np.zeros(first.shape), np.empty(first.shape)
         for n, coefficients in enumerate(self._rows):
             if n:
@@ -65,11 +68,11 @@ class Horner:
             total *= second
         return total
 
-    def _twice(self, first: Any, second: Any) -> Any:
+    def _twice(self, first: Array, second: Array) -> Array:
         zero = np.zeros(first.shape)
-        total = zero, zero
+        total: Pair = zero, zero
         for coefficients in self._rows:
-            row = zero, zero
+            row: Pair = zero, zero
             for value in coefficients:
                 row = _plus(_times(row, first), value)
             total = _plus(_times(total, second), row)
@@ -84,7 +87,7 @@ def _two_doubles(value: Any) -> tuple[float, float]:
     return high, float(value - Fraction(high)) if isinstance(value, Fraction) else 0.0
 
 
-def _plus(left: Any, right: Any) -> Any:
+def _plus(left: Pair, right: Pair) -> Pair:
     """The sum of two pairs, the rounding error of the leading sum kept."""
     total = left[0] + right[0]
     part = total - left[0]
@@ -92,7 +95,7 @@ def _plus(left: Any, right: Any) -> Any:
     return _tidy(total, error + (left[1] + right[1]))
 
 
-def _times(left: Any, factor: Any) -> Any:
+def _times(left: Pair, factor: Side) -> Pair:
     """A pair times a double, the rounding error of the leading product kept."""
     product = left[0] * factor
     a, b = _halves(left[0]), _halves(factor)
@@ -100,12 +103,12 @@ def _times(left: Any, factor: Any) -> Any:
     return _tidy(product, error + left[1] * factor)
 
 
-def _halves(value: Any) -> Any:
+def _halves(value: Side) -> Pair:
     moved = SPLIT * value
     high = moved - (moved - value)
     return high, value - high
 
 
-def _tidy(high: Any, low: Any) -> Any:
+def _tidy(high: Side, low: Side) -> Pair:
     total = high + low
     return total, low - (total - high)

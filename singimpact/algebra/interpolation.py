@@ -6,12 +6,15 @@ denominator.  How large the coefficients are is not known, so B grows until ever
 coefficient must agree at another number, which is a root of what is wrong only by chance.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import lcm
 from typing import Any
 
 from singimpact.algebra.polynomials import Exponents
+from singimpact.handed_on import flint
 
 Value = dict[Exponents, Any]
 
@@ -49,13 +52,13 @@ class RationalCoefficients:
 
     terms: dict[Exponents, tuple[Any, Any]]
 
-    def at(self, value: Any) -> Value:
+    def at(self, value: int | flint.fmpq) -> Value:
         """The polynomial at a value of the letter."""
         return {key: above(value) / below(value) for key, (above, below) in self.terms.items()}
 
 
 def interpolated(
-    values_at: Callable[[int], Sequence[Value]], denominators: Sequence[Any]
+    values_at: Callable[[int], Sequence[Value]], denominators: Sequence[flint.fmpq_poly]
 ) -> list[RationalCoefficients]:
     """Polynomials in the letter from their values at a large whole number.
 
@@ -76,8 +79,6 @@ def interpolated(
     >>> found[0].terms[(1,)]
     (x^2, x + 1)
     """
-    import flint
-
     checked: Sequence[Value] | None = None
     for base in READING.bases:
         rows = [
@@ -93,11 +94,9 @@ def interpolated(
 
 
 def _read(
-    rows: Sequence[Mapping[Exponents, Any]], denominators: Sequence[Any], base: int
+    rows: Sequence[Mapping[Exponents, flint.fmpq]], denominators: Sequence[flint.fmpq_poly], base: int
 ) -> list[RationalCoefficients] | None:
     """The coefficients from the values of their numerators; None when the base is too small for one."""
-    import flint
-
     below, coefficients = 1, []
     for row, denominator in zip(rows, denominators, strict=True):
         terms = {}
@@ -113,7 +112,7 @@ def _read(
     return coefficients
 
 
-def _fractions(value: int, factor: int, base: int) -> tuple[list[Any], int] | None:
+def _fractions(value: int, factor: int, base: int) -> tuple[list[flint.fmpz], int] | None:
     """The digits of a multiple of a whole number, by a factor that makes all of them small; None without such a one."""
     small = base >> READING.spare
     while factor < small:
@@ -128,7 +127,7 @@ def _fractions(value: int, factor: int, base: int) -> tuple[list[Any], int] | No
     return None
 
 
-def _digits(value: int, base: int) -> list[Any]:
+def _digits(value: int, base: int) -> list[flint.fmpz]:
     """The digits of a whole number, from the last one on, each of size at most base/2.
 
     Examples
@@ -136,9 +135,7 @@ def _digits(value: int, base: int) -> list[Any]:
     >>> _digits(97, 10), _digits(-97, 10)
     ([-3, 0, 1], [3, 0, -1])
     """
-    from flint import fmpz
-
-    digits, left, whole, half = [], fmpz(value), fmpz(base), fmpz(base // 2)
+    digits, left, whole, half = [], flint.fmpz(value), flint.fmpz(base), flint.fmpz(base // 2)
     while left:
         left, digit = divmod(left, whole)
         if digit > half:
@@ -164,7 +161,7 @@ def _denominator(residue: int, base: int) -> int:
     return denominator
 
 
-def in_lowest_terms(above: Any, below: Any) -> tuple[Any, Any]:
+def in_lowest_terms(above: flint.fmpq_poly, below: flint.fmpq_poly) -> tuple[flint.fmpq_poly, flint.fmpq_poly]:
     """A quotient without common factor; the coefficients of its denominator are whole and have none either.
 
     Examples
@@ -181,7 +178,5 @@ def in_lowest_terms(above: Any, below: Any) -> tuple[Any, Any]:
 
 def _agrees(found: RationalCoefficients, node: int, values: Value) -> bool:
     """Whether every monomial has its value at a node that was not used for reading."""
-    import flint
-
     shown = found.at(flint.fmpq(node))
     return not any(shown.get(key, 0) != values.get(key, 0) for key in shown.keys() | values.keys())

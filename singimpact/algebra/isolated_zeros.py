@@ -19,7 +19,7 @@ from singimpact.algebra.balls import BITS, Balls, Zero, as_rational, derivatives
 from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.expressions import BOUND, Expression, Root
 from singimpact.algebra.precision import balls_at
-from singimpact.algebra.taylor import NotSmooth
+from singimpact.algebra.taylor import NotSmooth, dot
 from singimpact.inputs import InputError, shown
 from singimpact.progress import ProgressLine
 
@@ -216,7 +216,7 @@ class _Search:
             return None
         at_middle, J = linear
         for value, row in zip(at_middle, J, strict=True):
-            if not (value + _dot(row, away)).contains(0):
+            if not (value + dot(row, away)).contains(0):
                 return ()
         matrix = np.array([[float(slope.mid()) for slope in row] for row in J])
         try:
@@ -226,8 +226,8 @@ class _Search:
             return None
         moved = []
         for i, row in enumerate(Y):
-            rest = [int(i == k) - _dot(row, [J[n][k] for n in range(self.size)]) for k in range(self.size)]
-            moved.append(middle[i] - _dot(row, at_middle) + _dot(rest, away))
+            rest = [int(i == k) - dot(row, [J[n][k] for n in range(self.size)]) for k in range(self.size)]
+            moved.append(middle[i] - dot(row, at_middle) + dot(rest, away))
         return tuple(moved) if all(side.is_finite() for side in moved) else None
 
     def _cut(self, box: Box) -> list[Box]:
@@ -248,13 +248,6 @@ class _Search:
     @staticmethod
     def _inside(one: Place, other: Place) -> bool:
         return all(b.contains_interior(a) for a, b in zip(one, other, strict=True))
-
-
-def _dot(row: Sequence[Any], column: Sequence[Any]) -> Any:
-    total = row[0] * column[0]
-    for a, b in zip(row[1:], column[1:], strict=True):
-        total = total + a * b
-    return total
 
 
 # All double zeros in one variable of a function with a parameter, in a window of both.

@@ -15,6 +15,7 @@ from singimpact.algebra.expressions import Expression, Root, evaluate
 from singimpact.algebra.polynomials import Exponents, SparsePolynomials
 from singimpact.algebra.precision import kept_property
 from singimpact.algebra.taylor import taylor_coefficients
+from singimpact.handed_on import sympy
 
 
 @dataclass(frozen=True)
@@ -109,17 +110,13 @@ class JetSpace:
     def power(self, base: Jet, exponent: Fraction) -> Jet:
         if exponent.denominator == 1 and exponent >= 0:
             return base ** int(exponent)
-        return self.composed("power", base, exponent)
+        return self.call("power", base, exponent)
 
-    def call(self, function: str, argument: Jet) -> Jet:
-        return self.composed(function, argument, None)
-
-    def composed(self, function: str, argument: Jet, exponent: Fraction | None) -> Jet:
+    def call(self, function: str, argument: Jet, exponent: Fraction | None = None) -> Jet:
         """function(argument), by its Taylor series at the constant term."""
         start = argument.constant_term()
         series = taylor_coefficients(function, start, self.order, self.ring, exponent)
-        rest = argument - self.constant(start)
-        total = self.constant(series[-1])
+        rest, total = argument - self.constant(start), self.constant(series[-1])
         for coefficient in reversed(series[:-1]):
             total = total * rest + self.constant(coefficient)
         return total
@@ -179,17 +176,13 @@ class Jet:
 
     def reciprocal(self) -> Jet:
         """1/self, part by part; the constant term must have an inverse in the ring, and no variable weight 0."""
-        start, space = self.space.power(self._constant_part(), Fraction(-1)), self.space
-        found = start
-        for degree in range(1, space.order + 1):
-            rest = (self * found).part(degree)
-            found = found - rest * start
-        return found
-
-    def _constant_part(self) -> Jet:
-        if 0 in self.space.weights:
+        space = self.space
+        if 0 in space.weights:
             raise TypeError("a jet with a variable of weight 0 has no reciprocal")
-        return self.space.constant(self.constant_term())
+        found = start = space.power(space.constant(self.constant_term()), Fraction(-1))
+        for degree in range(1, space.order + 1):
+            found = found - (self * found).part(degree) * start
+        return found
 
     def __pow__(self, exponent: int) -> Jet:
         result, square = self.space.rational(Fraction(1)), self
@@ -279,8 +272,6 @@ class Jet:
 
     def to_sympy(self, number: Callable[[Any], Any] | None = None) -> Any:
         """The jet as a sympy expression in its variables; `number` shows a coefficient, or else the ring does."""
-        import sympy
-
         convert: Any = number or getattr(self.space.ring, "to_sympy", sympy.sympify)
         letters = [sympy.Symbol(name) for name in self.space.variables]
         powers = (sympy.prod(s**e for s, e in zip(letters, key, strict=True)) for key in self.terms)

@@ -32,8 +32,8 @@ class Monomials:
 
     def __init__(self, symbols: Sequence[Any]) -> None:
         self._symbols = list(symbols)
-        places = sorted(range(len(symbols)), key=lambda n: symbols[n].name)
-        self._rank = {n: rank for rank, n in enumerate(places)}
+        ranked = sorted(range(len(symbols)), key=lambda n: symbols[n].name)
+        self._rank = {n: rank for rank, n in enumerate(ranked)}
         self._factors: dict[tuple[int, int], tuple[Key, Any]] = {}
 
     def summed(self, terms: Mapping[Exponents, Any]) -> Any:
@@ -52,8 +52,7 @@ class Monomials:
         if found is None:
             symbol = self._symbols[place]
             power = symbol if exponent == 1 else sympy.Pow(symbol, exponent)
-            found = ((int(exponent > 1), self._rank[place], exponent), power)
-            self._factors[(place, exponent)] = found
+            found = self._factors[(place, exponent)] = ((int(exponent > 1), self._rank[place], exponent), power)
         return found
 
     def _term(self, exponents: Exponents, value: Any) -> tuple[Key, Any]:

@@ -158,10 +158,8 @@ class _Parser:
 
     def __init__(self, text: str, names: tuple[str, ...], what: str) -> None:
         self.text, self.names, self.what = text.rstrip(), names, what
-        self.at = 0
-        self.depth = 0
-        self.roots = 0
-        self.token, self.kind = "", ""
+        self.at = self.depth = self.roots = 0
+        self.token = self.kind = ""
         self.before = "", ""
         self.advance()
 
@@ -215,14 +213,13 @@ class _Parser:
         self.depth += 1
         if self.depth > LIMITS.depth:
             raise self.refusal(f"it is nested deeper than {LIMITS.depth} levels")
-        tree = self.product()
-        terms = [tree]
+        terms = [self.product()]
         while self.kind == "sign" and self.token in "+-":
             minus = self.token == "-"
             self.advance()
             terms.append(negate(self.product()) if minus else self.product())
         self.depth -= 1
-        return add(*terms) if len(terms) > 1 else tree
+        return add(*terms) if len(terms) > 1 else terms[0]
 
     def product(self) -> Expression:
         factors = [self.signed()]
@@ -381,7 +378,8 @@ def _convert(tree: Any, names: tuple[str, ...], depth: int) -> Expression:
     if tree.is_Float:
         if not tree.is_finite:
             raise InputError("it contains a number that is not finite")
-        return Number(_exact_float(tree))
+        sign, mantissa, exponent, _ = tree._mpf_
+        return Number((-1 if sign else 1) * Fraction(int(mantissa)) * Fraction(2) ** int(exponent))
     if kind == "Pi":
         return Pi()
     if tree.is_Symbol:
@@ -403,9 +401,3 @@ def _convert(tree: Any, names: tuple[str, ...], depth: int) -> Expression:
         rough = ROUGH.get(kind, kind) in SMOOTH
         raise InputError(refused_function(kind) if rough else f"{shown(kind)} is not one of {_LANGUAGE}")
     return function(parts[0])
-
-
-def _exact_float(value: Any) -> Fraction:
-    sign, mantissa, exponent, _ = value._mpf_
-    size = Fraction(int(mantissa)) * Fraction(2) ** int(exponent)
-    return -size if sign else size

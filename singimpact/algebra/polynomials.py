@@ -10,6 +10,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
+from singimpact.handed_on import flint
+
 Exponents = tuple[int, ...]
 
 
@@ -24,14 +26,12 @@ class PackedPolynomials:
     """
 
     def __init__(self, variables: tuple[str, ...], names: tuple[str, ...] = (), inner: Any = None) -> None:
-        import flint
-
         self.size = len(variables)
         self._variables = tuple(f"jet {name}" for name in variables)  # a symbol may bear the name of a variable
         self._inner = inner
         self._context = flint.fmpq_mpoly_ctx.get((*self._variables, *names), "degrevlex")
 
-    def generators(self) -> tuple[Any, ...]:
+    def generators(self) -> tuple[flint.fmpq_mpoly, ...]:
         """The variables."""
         return tuple(self._context.gens()[: self.size])
 
@@ -41,11 +41,11 @@ class PackedPolynomials:
             return value.project_to_context(self._context)
         return self._context.constant(_fmpq(value))
 
-    def coefficient(self, poly: Any) -> Any:
+    def coefficient(self, poly: flint.fmpq_mpoly) -> flint.fmpq_mpoly:
         """A polynomial over Q[names] in which no variable occurs, as a coefficient: the other way round."""
         return poly.project_to_context(self._inner)
 
-    def from_terms(self, terms: Mapping[Exponents, Any]) -> Any:
+    def from_terms(self, terms: Mapping[Exponents, Any]) -> flint.fmpq_mpoly:
         """Exponents -> coefficient, as a polynomial."""
         if self._inner is None:
             return self._context.from_dict({key: _fmpq(value) for key, value in terms.items()})
@@ -55,7 +55,7 @@ class PackedPolynomials:
             total += self.constant(value) * self._context.from_dict({(*key, *tail): 1})
         return total
 
-    def terms(self, poly: Any) -> dict[Exponents, Any]:
+    def terms(self, poly: flint.fmpq_mpoly) -> dict[Exponents, Any]:
         """A polynomial as exponents -> coefficient, the nonzero ones."""
         if self._inner is None:
             return {tuple(map(int, key)): _fraction(value) for key, value in poly.to_dict().items()}
@@ -64,7 +64,7 @@ class PackedPolynomials:
             parts.setdefault(tuple(map(int, key[: self.size])), {})[key[self.size :]] = value
         return {key: self._inner.from_dict(part) for key, part in parts.items()}
 
-    def dot(self, pairs: Iterable[tuple[Any, Any]]) -> Any:
+    def dot(self, pairs: Iterable[tuple[flint.fmpq_mpoly, flint.fmpq_mpoly]]) -> flint.fmpq_mpoly:
         """The sum of the products of pairs, added like with like: a sum copies what it is added to."""
         waiting: list[Any] = []
         for left, right in pairs:
@@ -77,44 +77,44 @@ class PackedPolynomials:
             total = waiting.pop() + total
         return total
 
-    def add(self, left: Any, right: Any) -> Any:
+    def add(self, left: flint.fmpq_mpoly, right: flint.fmpq_mpoly) -> flint.fmpq_mpoly:
         return left + right
 
-    def scaled(self, poly: Any, factor: Any) -> Any:
+    def scaled(self, poly: flint.fmpq_mpoly, factor: Any) -> Any:
         """The polynomial times a coefficient."""
         return poly * self.constant(factor)
 
     def vanishes(self, poly: Any) -> bool:
         return bool(poly == 0)
 
-    def derivative(self, poly: Any, index: int) -> Any:
+    def derivative(self, poly: flint.fmpq_mpoly, index: int) -> flint.fmpq_mpoly:
         return poly.derivative(self._variables[index])
 
-    def integral(self, poly: Any, index: int) -> Any:
+    def integral(self, poly: flint.fmpq_mpoly, index: int) -> flint.fmpq_mpoly:
         """The integral from 0."""
         return poly.integral(self._variables[index])
 
-    def at(self, poly: Any, index: int, value: Fraction) -> Any:
+    def at(self, poly: flint.fmpq_mpoly, index: int, value: Fraction) -> flint.fmpq_mpoly:
         """The polynomial with one variable set to a rational."""
         return poly.subs({self._variables[index]: _fmpq(value)})
 
-    def without(self, poly: Any, index: int, target: PackedPolynomials) -> Any:
+    def without(self, poly: flint.fmpq_mpoly, index: int, target: PackedPolynomials) -> flint.fmpq_mpoly:
         """The polynomial, free of one variable, as one of `target`, which has the others."""
         assert poly.degrees()[index] <= 0
         return poly.project_to_context(target._context)
 
-    def substituted(self, poly: Any, images: Sequence[Any], target: PackedPolynomials) -> Any:
+    def substituted(
+        self, poly: flint.fmpq_mpoly, images: Sequence[flint.fmpq_mpoly], target: PackedPolynomials
+    ) -> flint.fmpq_mpoly:
         """The polynomial with its variables replaced by polynomials of `target`, over the same coefficients."""
         return poly.compose(*images, *target._context.gens()[target.size :], ctx=target._context)
 
 
-def _fmpq(value: Any) -> Any:
-    import flint
-
+def _fmpq(value: int | Fraction) -> flint.fmpq:
     return flint.fmpq(value.numerator, value.denominator)
 
 
-def _fraction(value: Any) -> Fraction:
+def _fraction(value: flint.fmpq) -> Fraction:
     return Fraction(int(value.p), int(value.q))
 
 
@@ -154,8 +154,7 @@ class SparsePolynomials:
             for key, value in left.items():
                 for other, factor in right.items():
                     place = tuple(i + k for i, k in zip(key, other, strict=True))
-                    product = value * factor
-                    total[place] = total[place] + product if place in total else product
+                    total[place] = total[place] + value * factor if place in total else value * factor
         return total
 
     def add(self, left: Mapping[Exponents, Any], right: Mapping[Exponents, Any]) -> dict[Exponents, Any]:

@@ -17,6 +17,8 @@ from threading import RLock
 from types import TracebackType
 from typing import Any, TypeVar
 
+from singimpact.handed_on import flint
+
 T = TypeVar("T")
 _LOCK = RLock()
 if hasattr(os, "register_at_fork"):
@@ -27,15 +29,15 @@ if hasattr(os, "register_at_fork"):
 class Precision:
     """The lock, and a precision that is put back with it."""
 
-    __slots__ = ("before", "context", "name", "value")
+    __slots__ = ("before", "context", "name", "restored", "value")
 
-    def __init__(self, context: Any, name: str, value: int) -> None:
-        self.context, self.name, self.value = context, name, value
+    def __init__(self, context: Any, name: str, value: int, restored: str = "prec") -> None:
+        self.context, self.name, self.value, self.restored = context, name, value, restored
 
     def __enter__(self) -> Any:
         _LOCK.acquire()
         try:
-            self.before = self.context.prec
+            self.before = getattr(self.context, self.restored)
             setattr(self.context, self.name, self.value)
         except BaseException:
             _LOCK.release()
@@ -46,7 +48,7 @@ class Precision:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         try:
-            self.context.prec = self.before
+            setattr(self.context, self.restored, self.before)
         finally:
             _LOCK.release()
 
@@ -61,15 +63,11 @@ def balls_at(bits: int) -> Precision:
     ...     (flint.arb(1) / 3).rel_accuracy_bits() > 90
     True
     """
-    import flint
-
     return Precision(flint.ctx, "prec", bits)
 
 
 def bits_of_balls() -> int:
     """The bits that balls have now."""
-    import flint
-
     return int(flint.ctx.prec)
 
 
@@ -90,24 +88,9 @@ def bits_at(bits: int) -> Precision:
     return Precision(_own_context(), "prec", bits)
 
 
-class series_of_any_length:
+def series_of_any_length() -> Precision:
     """The lock, with flint's power series uncut: by itself flint cuts each after ten terms and does not say so."""
-
-    __slots__ = ("before",)
-
-    def __enter__(self) -> None:
-        import flint
-
-        _LOCK.acquire()
-        self.before, flint.ctx.cap = flint.ctx.cap, 10**6
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        import flint
-
-        flint.ctx.cap = self.before
-        _LOCK.release()
+    return Precision(flint.ctx, "cap", 10**6, "cap")
 
 
 @dataclass
@@ -167,7 +150,7 @@ def negative(value: Any) -> Any:
     if getattr(getattr(value, "dtype", None), "kind", "f") != "O":
         return -value
     turned = value.copy()
-    turned.ravel()[:] = [negative(each) for each in value.ravel().tolist()]
+    turned.ravel()[:] = [negative(entry) for entry in value.ravel().tolist()]
     return turned
 
 

@@ -3,10 +3,11 @@
 Coefficients are constant trees, so pi and sqrt(2) may occur in them; their signs are decided by balls.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import lru_cache
-from math import comb, factorial
+from functools import lru_cache, reduce
+from math import factorial, prod
 
 from singimpact.algebra.expressions import (
     MINUS_ONE,
@@ -106,15 +107,9 @@ class _Expander:
             case Name():
                 return self.kept({Fraction(1): number(self.sign)}, None)
             case Sum(terms):
-                total = self.of(terms[0])
-                for term in terms[1:]:
-                    total = self.sum(total, self.of(term))
-                return total
+                return reduce(self.sum, map(self.of, terms))
             case Product(factors):
-                product = self.of(factors[0])
-                for factor in factors[1:]:
-                    product = self.product(product, self.of(factor))
-                return product
+                return reduce(self.product, map(self.of, factors))
             case Power(base, Number(exponent)):
                 return self.raised(self.of(base), exponent)
             case Power(base, exponent_tree):
@@ -163,18 +158,12 @@ class _Expander:
         if abs(exponent) > EXPONENTS and exponent.denominator == 1 and not isinstance(value, Number):
             raise NoExpansion("a large power")
         head = Puiseux(((first * exponent, _power(value, exponent)),))
-        tail = self.relative(base)
+        terms = {e - first: multiply(c, power(value, MINUS_ONE)) for e, c in base.terms[1:]}
+        tail = self.kept(terms, None if base.bound is None else base.bound - first)
         return self.product(head, self.composed(tail, lambda k: number(_binomial(exponent, k))))
 
-    def relative(self, base: Puiseux) -> Puiseux:
-        """u in base = c w^e (1 + u)."""
-        first, value = base.lead
-        terms = {e - first: multiply(c, power(value, MINUS_ONE)) for e, c in base.terms[1:]}
-        return self.kept(terms, None if base.bound is None else base.bound - first)
-
-    def composed(self, u: Puiseux, coefficient: object) -> Puiseux:
+    def composed(self, u: Puiseux, coefficient: Callable[[int], Expression]) -> Puiseux:
         """sum c_k u^k for u without a constant term."""
-        assert callable(coefficient)
         total = self.kept({Fraction(0): coefficient(0)}, None)
         if not u.terms:
             return Puiseux(total.terms, u.bound)
@@ -207,8 +196,7 @@ _MINUS = Puiseux(((Fraction(0), MINUS_ONE),))
 
 
 def _least(left: Fraction | None, right: Fraction | None) -> Fraction | None:
-    given = [part for part in (left, right) if part is not None]
-    return min(given) if given else None
+    return min((bound for bound in (left, right) if bound is not None), default=None)
 
 
 def _shifted(cut: Puiseux, other: Puiseux) -> Fraction | None:
@@ -221,12 +209,7 @@ def _shifted(cut: Puiseux, other: Puiseux) -> Fraction | None:
 
 
 def _binomial(exponent: Fraction, k: int) -> Fraction:
-    if exponent.denominator == 1 and exponent >= 0:
-        return Fraction(comb(int(exponent), k))
-    found = Fraction(1)
-    for i in range(k):
-        found *= (exponent - i) / (i + 1)
-    return found
+    return prod(((exponent - i) / (i + 1) for i in range(k)), start=Fraction(1))
 
 
 def _plain(tree: Expression) -> Expression:
@@ -270,9 +253,9 @@ def _taylor(function: str, start: Expression, count: int) -> tuple[Expression, .
     if function == "log" and sign_of(start) <= 0:
         raise NoExpansion(f"log of {start}")
     value = _plain(Call(function, start))
-    if function in ("exp", "log"):
-        if function == "exp":
-            return tuple(multiply(value, number(Fraction(1, factorial(k)))) for k in range(count + 1))
+    if function == "exp":
+        return tuple(multiply(value, number(Fraction(1, factorial(k)))) for k in range(count + 1))
+    if function == "log":
         return (
             value,
             *(multiply(number(Fraction((-1) ** (k + 1), k)), power(start, number(-k))) for k in range(1, count + 1)),
@@ -284,8 +267,7 @@ def _taylor(function: str, start: Expression, count: int) -> tuple[Expression, .
         return tuple(multiply(cycle[k % 4], number(Fraction(1, factorial(k)))) for k in range(count + 1))
     coefficients = [value]
     if function == "atan":  # (1 + z^2) f' = 1
-        below = power(add(ONE, multiply(start, start)), MINUS_ONE)
-        slopes = [below]
+        slopes = [below := power(add(ONE, multiply(start, start)), MINUS_ONE)]
         for k in range(1, count):
             more = slopes[k - 2] if k > 1 else ZERO
             slopes.append(multiply(MINUS_ONE, add(multiply(number(2), start, slopes[k - 1]), more), below))

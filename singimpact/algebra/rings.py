@@ -14,9 +14,10 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.balls import Balls
-from singimpact.algebra.expressions import Expression, Root, evaluate
+from singimpact.algebra.expressions import Expression, Root, evaluate, names_in
 from singimpact.algebra.polynomials import PackedPolynomials
 from singimpact.algebra.precision import kept_property
+from singimpact.handed_on import flint, sympy
 
 
 class Exact:
@@ -170,35 +171,25 @@ class Symbolic:
 
     def symbol(self, name: str) -> Any:
         """A letter."""
-        import sympy
-
         return sympy.Symbol(name)
 
     def element(self, value: Any) -> Any:
         """A sympy object without a float in it, or a rational of Python."""
-        import sympy
-
         found = self.rational(value) if isinstance(value, Fraction) else sympy.sympify(value)
         if found.has(sympy.Float):
             raise TypeError(f"{value!r} is not exact")
         return found
 
     def rational(self, value: Fraction) -> Any:
-        import sympy
-
         return sympy.Rational(value.numerator, value.denominator)
 
     def pi(self) -> Any:
-        import sympy
-
         return sympy.pi
 
     def power(self, base: Any, exponent: Fraction) -> Any:
         return base ** self.rational(exponent)
 
     def call(self, function: str, argument: Any) -> Any:
-        import sympy
-
         return getattr(sympy, "Abs" if function == "abs" else function)(argument)
 
     def root(self, tree: Root) -> Any:
@@ -217,10 +208,6 @@ def to_sympy(tree: Expression) -> Any:
     >>> to_sympy(parse("x**2/2", ["x"]))
     x**2/2
     """
-    import sympy
-
-    from singimpact.algebra.expressions import names_in
-
     return evaluate(tree, {name: sympy.Symbol(name) for name in names_in(tree)}, SYMBOLIC)
 
 
@@ -238,8 +225,6 @@ class SymbolRing:
     """
 
     def __init__(self, names: tuple[str, ...]) -> None:
-        import flint
-
         self.names = names
         self._context = flint.fmpq_mpoly_ctx.get(names, "degrevlex")
         self._symbols = dict(zip(names, self._context.gens(), strict=True))
@@ -268,8 +253,6 @@ class SymbolRing:
         return self._symbols[name]
 
     def rational(self, value: Fraction) -> Any:
-        import flint
-
         return self._context.constant(flint.fmpq(value.numerator, value.denominator))
 
     def pi(self) -> Any:
@@ -284,14 +267,10 @@ class SymbolRing:
 
     def letters(self) -> list[Any]:
         """Names -> the symbols that sympy shows for them."""
-        import sympy
-
         return [sympy.Symbol(name) for name in self.names]
 
     def to_sympy(self, value: Any) -> Any:
         """A polynomial of the ring as a sympy expression."""
-        import sympy
-
         terms = {key: sympy_rational(int(c.p), int(c.q)) for key, c in value.to_dict().items()}
         if self._monomials is not None:
             return self._monomials.summed(terms)
@@ -303,8 +282,6 @@ class SymbolRing:
     @kept_property
     def _monomials(self) -> Any:
         """The sums that need no sympy to put in order; None when a name stands for more than a symbol."""
-        import sympy
-
         from singimpact.algebra.long_sums import Monomials
 
         letters = self.letters()
@@ -320,6 +297,4 @@ class SymbolRing:
 @lru_cache(maxsize=65_536)
 def sympy_rational(above: int, below: int) -> Any:
     """A rational of sympy; the same few come again and again."""
-    import sympy
-
     return sympy.Rational(above, below)

@@ -1,6 +1,6 @@
 """Sentences of certificates, made from their data alone: a reader sees what was checked."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from singimpact.algebra.plain import rational, row, terms
@@ -88,16 +88,10 @@ def _definite(data: Mapping[str, Any], names: Sequence[str]) -> str:
     return f"{polynomial(form, names)} {({1: '>', -1: '<'})[data['sign']]} 0 for all ({x}, {y}) but (0, 0)"
 
 
-def _identity(data: Mapping[str, Any], names: Sequence[str]) -> str:
-    left, right = (_quotient(data[side], names) for side in ("left", "right"))
+def _identity(data: Mapping[str, Any], names: Sequence[str], side_of: Callable[..., str] = _quotient) -> str:
+    left, right = (side_of(data[side], names) for side in ("left", "right"))
     where = f" where {polynomial(data['relation'][2], names)} = 0" if data["relation"] else ""
     return f"{left} = {right}{where}"
-
-
-def _composed(data: Mapping[str, Any], names: Sequence[str]) -> str:
-    left, right = (_at_images(data[side], names) for side in ("left", "right"))
-    where = f" where {polynomial(data['relation'][2], names)} = 0" if data["relation"] else ""
-    return f"{left} = {right}{where}{_order(data, names)}"
 
 
 def _at_images(side: Mapping[str, Any], names: Sequence[str]) -> str:
@@ -143,14 +137,14 @@ def _flight(data: Mapping[str, Any], names: Sequence[str]) -> str:
     )
 
 
-_SENTENCES = {
+_SENTENCES: dict[str, Callable[..., str]] = {
     "positive": _positive,
     "chain": _chain,
     "count": _count,
     "value": _value,
     "definite": _definite,
     "identity": _identity,
-    "composed": _composed,
+    "composed": lambda data, names: _identity(data, names, _at_images) + _order(data, names),
     "motion": _motion,
     "flight": _flight,
 }

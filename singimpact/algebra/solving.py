@@ -1,8 +1,12 @@
 """A number that is sought: by halving, by the secant method, by Newton's method in balls."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from fractions import Fraction
 from typing import Any, TypeVar
+
+from singimpact.handed_on import flint
 
 T = TypeVar("T", float, Fraction)
 
@@ -47,7 +51,9 @@ def secant(miss: Callable[[Any], Any], first: Any, second: Any, rounds: int = 12
     return second
 
 
-def newton_in_balls(function: Callable[[Any], Any], slope: Callable[[Any], Any], root: Any) -> Any:
+def newton_in_balls(
+    function: Callable[[flint.arb], flint.arb], slope: Callable[[flint.arb], flint.arb], root: flint.arb
+) -> flint.arb:
     """The ball of a zero made narrow: what encloses one zero, where the slope keeps its sign, goes on to enclose it.
 
     Parameters

@@ -1,5 +1,6 @@
 """Taylor coefficients of the elementary functions at a point, over any ring, by their differential equations."""
 
+from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -30,12 +31,23 @@ def taylor_coefficients(
     >>> [str(c) for c in taylor_coefficients("power", Fraction(2), 2, EXACT, Fraction(-1))]
     ['1/2', '-1/4', '1/8']
     """
-    if function == "power":
-        assert exponent is not None
-        return _power(start, exponent, order, ring)
-    if function == "sqrt":
-        return _power(start, Fraction(1, 2), order, ring)
+    if function in ("power", "sqrt"):
+        return _power(start, Fraction(1, 2) if exponent is None else exponent, order, ring)
     return _SERIES[function](start, order, ring)
+
+
+def dot(left: Sequence[Any], right: Sequence[Any]) -> Any:
+    """left[0] right[0] + left[1] right[1] + ..., added in this order, over any ring.
+
+    Examples
+    --------
+    >>> dot([1, 2], [3, 4])
+    11
+    """
+    total = left[0] * right[0]
+    for a, b in zip(left[1:], right[1:], strict=True):
+        total = total + a * b
+    return total
 
 
 def _nonzero(function: str, start: Any) -> None:
@@ -81,10 +93,7 @@ def _log(start: Any, order: int, ring: Any) -> list[Any]:
 def _riccati(function: str, sign: int, start: Any, order: int, ring: Any) -> list[Any]:
     terms = [ring.call(function, start)]  # y' = 1 + sign y^2
     for k in range(order):
-        square = terms[0] * terms[k]
-        for i in range(1, k + 1):
-            square = square + terms[i] * terms[k - i]
-        slope = square * ring.rational(Fraction(sign)) + ring.rational(Fraction(int(k == 0)))
+        slope = dot(terms, terms[::-1]) * ring.rational(Fraction(sign)) + ring.rational(Fraction(int(k == 0)))
         terms.append(slope * ring.rational(Fraction(1, k + 1)))
     return terms
 

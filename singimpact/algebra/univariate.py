@@ -18,6 +18,7 @@ from singimpact.algebra.balls import Balls
 from singimpact.algebra.precision import balls_at
 from singimpact.algebra.rings import Doubles, Exact, SymbolRing
 from singimpact.algebra.solving import newton_in_balls
+from singimpact.handed_on import flint
 
 
 class ExactUnivariate:
@@ -32,24 +33,20 @@ class ExactUnivariate:
 
     def number(self, value: Any) -> Any:
         """A scalar from a rational of Python or an element of the ring."""
-        import flint
-
         return flint.fmpq(value.numerator, value.denominator) if isinstance(value, int | Fraction) else value
 
     def poly(self, coefficients: Sequence[Any]) -> Any:
         """The polynomial with these coefficients, from the constant one on."""
-        import flint
-
         return flint.fmpq_poly([self.number(value) for value in coefficients])
 
-    def integral(self, poly: Any) -> Any:
+    def integral(self, poly: flint.fmpq_poly) -> flint.fmpq_poly:
         """The integral from 0."""
         return poly.integral()
 
-    def derivative(self, poly: Any) -> Any:
+    def derivative(self, poly: flint.fmpq_poly) -> flint.fmpq_poly:
         return poly.derivative()
 
-    def at_one(self, poly: Any) -> Any:
+    def at_one(self, poly: flint.fmpq_poly) -> Any:
         return poly(self.number(1))
 
     def element(self, number: Any) -> Any:
@@ -60,19 +57,13 @@ class ExactUnivariate:
 class BallUnivariate(ExactUnivariate):
     """arb_poly over arb, at the precision that is set."""
 
-    def number(self, value: Any) -> Any:
-        import flint
+    def number(self, value: int | Fraction | flint.arb) -> flint.arb:
+        return flint.arb(super().number(value)) if isinstance(value, int | Fraction) else value
 
-        if isinstance(value, int | Fraction):
-            return flint.arb(flint.fmpq(value.numerator, value.denominator))
-        return value
-
-    def poly(self, coefficients: Sequence[Any]) -> Any:
-        import flint
-
+    def poly(self, coefficients: Sequence[int | Fraction | flint.arb]) -> flint.arb_poly:
         return flint.arb_poly([self.number(value) for value in coefficients])
 
-    def element(self, number: Any) -> Any:
+    def element(self, number: flint.arb) -> flint.arb:
         return number
 
 
@@ -133,8 +124,6 @@ class SymbolUnivariate:
         self._target = ring
 
     def number(self, value: Any) -> Any:
-        import flint
-
         if isinstance(value, int | Fraction):
             return flint.fmpq(value.numerator, value.denominator)
         return value if isinstance(value, flint.fmpq) else self._packed.constant(value)
@@ -145,19 +134,17 @@ class SymbolUnivariate:
             total, power = total + power * self.number(value), power * self._z
         return total
 
-    def integral(self, poly: Any) -> Any:
+    def integral(self, poly: flint.fmpq_mpoly) -> flint.fmpq_mpoly:
         """The integral from 0."""
         return self._packed.integral(poly, 0)
 
-    def derivative(self, poly: Any) -> Any:
+    def derivative(self, poly: flint.fmpq_mpoly) -> flint.fmpq_mpoly:
         return self._packed.derivative(poly, 0)
 
-    def at_one(self, poly: Any) -> Any:
+    def at_one(self, poly: flint.fmpq_mpoly) -> flint.fmpq_mpoly:
         return self._packed.at(poly, 0, Fraction(1))
 
-    def element(self, number: Any) -> Any:
-        import flint
-
+    def element(self, number: flint.fmpq | flint.fmpq_mpoly) -> Any:
         if isinstance(number, flint.fmpq):
             return self._target.rational(Fraction(int(number.p), int(number.q)))
         return self._packed.coefficient(number)
@@ -196,7 +183,7 @@ def precision_of(ring: Any) -> Iterator[None]:
 FIRST_BITS = 128
 
 
-def real_roots(coefficients: Sequence[Fraction], balls: Balls) -> list[Any]:
+def real_roots(coefficients: Sequence[Fraction], balls: Balls) -> list[flint.arb]:
     """The real roots in increasing order, each in a ball that contains no other root.
 
     Parameters
@@ -208,19 +195,17 @@ def real_roots(coefficients: Sequence[Fraction], balls: Balls) -> list[Any]:
     >>> [float(root.mid()) for root in real_roots([Fraction(-2), Fraction(0), Fraction(1)], Balls(80))]
     [-1.4142135623730951, 1.4142135623730951]
     """
-    import flint
-
     poly: Any = flint.fmpq_poly([flint.fmpq(c.numerator, c.denominator) for c in coefficients]).numer()
     isolated: list[Any] = [root.real for root, _ in poly.complex_roots() if root.imag == 0]
     ordered = sorted(isolated, key=cmp_to_key(_order))
     return [refined(poly, root, balls.bits) for root in ordered]
 
 
-def _order(left: Any, right: Any) -> int:
+def _order(left: flint.arb, right: flint.arb) -> int:
     return -1 if left < right else 1
 
 
-def refined(poly: Any, isolated: Any, bits: int) -> Any:
+def refined(poly: flint.fmpz_poly, isolated: flint.arb, bits: int) -> flint.arb:
     """The one root of an integer polynomial in an isolating ball, to about `bits` bits relative to its size."""
     root, work, slope = isolated, min(FIRST_BITS, bits + 32), poly.derivative()
     while True:

@@ -6,7 +6,7 @@ Not here: what is measured (`flights`, `surface`, `dynamics`), claims of the pap
 from singimpact.handed_on import names_of
 
 _FILES = {
-    "drawn": "Draws KINDS RESTITUTIONS",
+    "drawn": "Draws KINDS Problem RESTITUTIONS values",
     "fresh": "cost",
     "groups": "GROUPS measured usual",
     "groups.impact_map_rows": "sizes_of taylor_stepper",
@@ -17,7 +17,6 @@ _FILES = {
     ),
     "page": "ABOUT COMMAND READING STRESS_ABOUT STRESS_COMMAND digest_of recorded stress_page timed_digest",
     "peers.fixed_steps": "flights numbers orbit",
-    "problems": "Problem values",
     "report": "in_words plotted reached table",
     "selftest.basin_pixels": "Follower row",
     "selftest.batches": "grazes lanes",

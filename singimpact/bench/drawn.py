@@ -5,19 +5,54 @@ x'' + x = cos 2.8t and x'' + x'/10 + x + 3x^3/10 = cos 1.7t over the wall at 0.3
 same ones.
 """
 
+import csv
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import lru_cache
 from math import acos, pi
-from typing import Any
+from pathlib import Path
 
 import numpy as np
 
 from singimpact.algebra.numbers import Array
-from singimpact.bench.problems import Problem
 from singimpact.flights.compiled_model import compiled_model
 from singimpact.flights.machine import compilable
 from singimpact.impact_oscillator import ImpactOscillator, linear
+
+# A state of a model as every peer takes it, and reference values by name.
+
+VALUES = Path(__file__).parent / "data" / "values.csv"
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A state and its model; numbers are exact doubles.
+
+    Parameters
+    ----------
+    family : `linear` (x'' + x) or `duffing` (x'' + 0.1 x' + x + 0.3 x^3), forced by cos(omega t).
+    """
+
+    family: str
+    omega: float
+    clearance: float
+    restitution: float
+    tau: float
+    v: float
+
+
+@lru_cache(maxsize=1)
+def values() -> dict[str, str]:
+    """Named values, as decimal text of 30 digits or more.
+
+    Examples
+    --------
+    >>> values()["G.duffing(1.5,1e-3).v"][:20]
+    '0.000600256662344163'
+    """
+    with VALUES.open(newline="", encoding="utf-8") as stream:
+        return {row["name"]: row["value"] for row in csv.DictReader(stream)}
+
 
 CHATTERING = "linear, chattering"
 OMEGAS = {"linear": 2.8, "duffing": 1.7, CHATTERING: 2.0}
@@ -74,22 +109,10 @@ class States:
         return Problem(self.family, omega, clearance, self.restitution, tau, v)
 
 
-def _generic(rng: Any, family: str, restitution: float, count: int) -> tuple[Array, Array]:  # noqa: ARG001
-    return rng.uniform(0, 2 * pi / OMEGAS[family], count), rng.uniform(0.05, 2, count)
-
-
-def _slow(rng: Any, family: str, restitution: float, count: int) -> tuple[Array, Array]:  # noqa: ARG001
-    return rng.uniform(0, 2 * pi / OMEGAS[family], count), 10 ** rng.uniform(-8, -2, count)
-
-
-def _far(rng: Any, family: str, restitution: float, count: int) -> tuple[Array, Array]:  # noqa: ARG001
-    return rng.uniform(-1e6, 1e6, count), rng.uniform(0.05, 2, count)
-
-
-def _pressed(rng: Any, family: str, count: int) -> Array:
+def _pressed(rng: np.random.Generator, family: str, count: int) -> Array:
     """Phases in the middle of the time that a_c presses, less some for the force of Duffing's model."""
     begin, end = pressing(family)
-    return begin + (end - begin) * rng.uniform(0.2, 0.7, count)  # type: ignore[no-any-return]
+    return begin + (end - begin) * rng.uniform(0.2, 0.7, count)
 
 
 def pressing(family: str) -> tuple[float, float]:
@@ -98,10 +121,16 @@ def pressing(family: str) -> tuple[float, float]:
     return angle / omega, (2 * pi - angle) / omega
 
 
-KINDS: dict[str, Callable[[Any, str, float, int], tuple[Array, Array]]] = {
-    "generic": _generic,
-    "v from 1e-8 to 1e-2": _slow,
-    "tau within 1e6": _far,
+KINDS: dict[str, Callable[[np.random.Generator, str, float, int], tuple[Array, Array]]] = {
+    "generic": lambda rng, family, _, count: (
+        rng.uniform(0, 2 * pi / OMEGAS[family], count),
+        rng.uniform(0.05, 2, count),
+    ),
+    "v from 1e-8 to 1e-2": lambda rng, family, _, count: (
+        rng.uniform(0, 2 * pi / OMEGAS[family], count),
+        10 ** rng.uniform(-8, -2, count),
+    ),
+    "tau within 1e6": lambda rng, _, __, count: (rng.uniform(-1e6, 1e6, count), rng.uniform(0.05, 2, count)),
     # where a_c presses, and so slow that the impacts accumulate before it ceases to
     "chattering": lambda rng, family, restitution, count: (
         _pressed(rng, family, count),

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from math import ceil, isfinite
 from typing import Any
 
+import mpmath
 import numpy as np
 
 from singimpact.algebra.numbers import EPSILON
@@ -293,7 +294,8 @@ def _row(group: str, case: Case, method: Method, turn: _Turn, timings: tuple[Any
     if case.truth:
         errors = [relative_error(answer, truth) for answer, truth in zip(answers, case.truth, strict=False)]
         conditions = case.conditions or [1.0] * len(errors)
-        allowed = [max(_least(method), 10 * kappa * method.epsilon) for kappa in conditions]
+        least = JUDGED.least if method.epsilon == EPSILON else 0.0
+        allowed = [max(least, 10 * kappa * method.epsilon) for kappa in conditions]
         wrong = sum(not off <= most for off, most in zip(errors, allowed, strict=False))
         missed = sum(not off <= case.missed for off in errors)
         seen = [off for off in errors if isfinite(off)]
@@ -318,10 +320,6 @@ def _row(group: str, case: Case, method: Method, turn: _Turn, timings: tuple[Any
     )
 
 
-def _least(method: Method) -> float:
-    return JUDGED.least if method.epsilon == EPSILON else 0.0
-
-
 def relative_error(answer: Any, truth: Any) -> float:
     """|found/truth - 1|; inf without an answer.
 
@@ -330,8 +328,6 @@ def relative_error(answer: Any, truth: Any) -> float:
     >>> relative_error(0.75, "0.5"), relative_error(None, 1), relative_error(float("nan"), 1)
     (0.5, inf, inf)
     """
-    import mpmath
-
     if answer is None:
         return float("inf")
     with mpmath.workdps(JUDGED.digits):

@@ -11,6 +11,7 @@ from functools import partial
 from math import log2, pi
 from typing import Any
 
+import flint
 import numpy as np
 
 from singimpact.algebra.numbers import EPSILON, Array
@@ -131,8 +132,6 @@ def _errors(
     family: str, omega: float, clearance: float, tau: float, v: float, errors: list[float]
 ) -> tuple[float, float, float]:
     """Errors of flight time and velocity in units of max(1e-14, 10 kappa eps), max(1e-13, 10 kappa eps); 1 if wrong."""
-    import flint
-
     status, time, next_v = errors[:3]
     period = 2 * pi / omega
     with balls_at(DRAW.bits + int(4 * max(-log2(v), 0))):

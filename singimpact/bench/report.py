@@ -4,6 +4,11 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import NullFormatter
+
 from singimpact.bench.measuring import Measured, Row
 from singimpact.scenes.style import BLACK, DASH_DOT, DASHES, DOTS, GREY, OPEN, ORBIT_COLORS, SHADE, SKY, WHITE
 
@@ -111,10 +116,8 @@ class Sheet:
 SHEET = Sheet()
 
 
-def plotted(measured: Measured) -> Any:
+def plotted(measured: Measured) -> Figure:
     """The matplotlib figure of a group."""
-    from matplotlib.figure import Figure
-
     panels = {
         case: [row for row in measured.rows if row.case == case]
         for case in dict.fromkeys(r.case for r in measured.rows)
@@ -147,7 +150,7 @@ def _look(names: Sequence[str], name: str) -> dict[str, Any]:
     }
 
 
-def _panel(axes: Any, case: str, rows: Sequence[Row], names: Sequence[str]) -> None:
+def _panel(axes: Axes, case: str, rows: Sequence[Row], names: Sequence[str]) -> None:
     floor = min([SHEET.floor, *(row.error for row in rows if row.error)])
     for name in dict.fromkeys(row.method for row in rows):
         line = [row for row in rows if row.method == name and row.error is not None]
@@ -167,10 +170,8 @@ def _panel(axes: Any, case: str, rows: Sequence[Row], names: Sequence[str]) -> N
     axes.spines[["top", "right"]].set_visible(False)
 
 
-def _widened(axes: Any) -> None:
+def _widened(axes: Axes) -> None:
     """Show three decades at least: fewer are hard to read, and labels between powers of ten would overlap."""
-    from matplotlib.ticker import NullFormatter
-
     low, high = axes.get_xlim()
     if high < SHEET.least * low:
         middle = (low * high) ** 0.5
@@ -178,7 +179,7 @@ def _widened(axes: Any) -> None:
     axes.xaxis.set_minor_formatter(NullFormatter())
 
 
-def _bars(axes: Any, rows: Sequence[Row]) -> None:
+def _bars(axes: Axes, rows: Sequence[Row]) -> None:
     """A bar a row, its name above it and its time beside it: names are too long for an axis."""
     several = len({row.case for row in rows}) > 1
     seconds, places = [row.microseconds / 1e6 for row in rows], range(len(rows))
@@ -197,9 +198,7 @@ def _bars(axes: Any, rows: Sequence[Row]) -> None:
     axes.spines[["top", "right"]].set_visible(False)
 
 
-def _legend(figure: Any, names: Sequence[str]) -> None:
-    from matplotlib.lines import Line2D
-
+def _legend(figure: Figure, names: Sequence[str]) -> None:
     keys = [Line2D([], [], label=name, **_look(names, name)) for name in names]
     keys.append(Line2D([], [], label="hollow: missed an answer", marker="o", linestyle="none", **OPEN))
     figure.legend(handles=keys, loc="outside lower center", ncols=2, fontsize=8, frameon=False)

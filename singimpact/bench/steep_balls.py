@@ -12,6 +12,8 @@ from pathlib import Path
 from time import process_time
 from typing import Any, NamedTuple
 
+import flint
+import mpmath
 import numpy as np
 
 from singimpact.algebra.numbers import EPSILON, Array
@@ -111,8 +113,6 @@ def enclosed(seed: int, state: Flown) -> Array:
 
 def _with_digits(osc: ImpactOscillator, at: tuple[float, float], time: Any) -> dict[str, float]:
     """The result of `digits=20` for a state whose flight time is known."""
-    import mpmath
-
     begin = process_time()
     hit = osc.first_hit(*at, digits=DIGITS, horizon=DRAW.horizon)
     spent = process_time() - begin
@@ -123,8 +123,6 @@ def _with_digits(osc: ImpactOscillator, at: tuple[float, float], time: Any) -> d
 
 def _off(found: float | str, ball: Any) -> float:
     """Relative error of a number against a ball, rounded up; nan for no number."""
-    import flint
-
     with balls_at(256):
         return float(abs(flint.arb(found) / ball - 1).upper())
 

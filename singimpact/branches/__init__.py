@@ -9,6 +9,7 @@ from singimpact.handed_on import names_of
 _FILES = {
     "ball_closing": "BallClosing Spans TouchingClosing return_slope",
     "closing": "Closing",
+    "cascade": "settled_orbit",
     "continuation": "Curve root_between",
     "cylinder": "distances",
     "enclosed_closing": "ClosingBoxes SEARCH closed_boxes",
@@ -24,7 +25,6 @@ _FILES = {
     "released": "Releases",
     "saddle_arcs": "expansion local_arc returned",
     "saddle_cones": "Cones",
-    "settled": "settled_orbit",
     "transitions": "OrbitTransitions",
 }
 __getattr__ = names_of(__name__, _FILES)

@@ -11,6 +11,8 @@ from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
+import flint
+
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.expressions import Expression, evaluate, names_in, number
@@ -175,8 +177,6 @@ class BallClosing:
 
     def miss(self, point: list[Fraction]) -> Any:
         """F at a point, as a column."""
-        import flint
-
         states, rows = self.states(point), []
         for i, (end, law) in enumerate(zip(*self.ends(point, Fraction(0)), strict=True)):
             rows += [[end.height], [law[0] - self.balls.rational(states[(i + 1) % len(states)][1])]]
@@ -195,8 +195,6 @@ class BallClosing:
 
     def matrix(self, slopes: Slopes) -> Any:
         """D F, without the column of v_1 where the orbit touches the wall."""
-        import flint
-
         size = 2 * len(slopes.ends)
         rows = [[flint.arb(0)] * (size + (self.over is not None)) for _ in range(size)]
         for i, (end, law) in enumerate(zip(slopes.ends, slopes.laws, strict=True)):
@@ -235,8 +233,6 @@ def _impact(end: Arrival, law: list[Any]) -> list[list[Any]]:
 
 def return_slope(slopes: Any) -> Any:
     """The derivative of the return map: the product of the D G."""
-    import flint
-
     total = flint.arb_mat([[1, 0], [0, 1]])
     for block in slopes[0]:
         total = flint.arb_mat([row[:2] for row in block]) * total

@@ -12,6 +12,7 @@ from functools import partial
 from typing import Any
 
 import numpy as np
+from flint import arb
 
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.expressions import evaluate
@@ -222,8 +223,6 @@ def _zeros(value: Tube, rate: Tube, length: Any, other: Callable[[Any], bool]) -
 
     Pieces that are left out since `other` holds on them come second.
     """
-    from flint import arb
-
     zeros: list[Any] = []
     left_out: list[Any] = []
     stack, least = [(arb(0), length)], length * arb(2) ** -PIECES

@@ -15,6 +15,7 @@ from fractions import Fraction
 from math import ceil, log
 from typing import Any, NamedTuple
 
+import flint
 import numpy as np
 
 from singimpact.algebra.balls import BITS_A_DIGIT
@@ -267,14 +268,10 @@ class _Between:
 
     def ball(self, centre: Fraction, radius: Fraction) -> Any:
         """All numbers within a radius."""
-        import flint
-
         return self.balls.rational(centre) + flint.arb(0, self.balls.rational(radius).upper())
 
     def miss(self, at: list[Fraction]) -> Any:
         """F at a point, as a column."""
-        import flint
-
         none, rows = Fraction(0), []
         first, last = self.leaving(at[0], none), self.coming(at[-1], none)
         for i in range(self.count):
@@ -296,8 +293,6 @@ class _Between:
 
     def matrix(self, slopes: _Slopes) -> Any:
         """D F: a column of s_u, blocks beside the diagonal, a column of s_s."""
-        import flint
-
         size = 2 * self.count
         rows = [[flint.arb(0)] * size for _ in range(size)]
         tangent = flint.arb_mat(slopes.hits[0].derivative) * self.tangent(self.leave, slopes.ends[0], 0)
@@ -313,8 +308,6 @@ class _Between:
 
     def tangent(self, cones: Cones, slope: Fraction, along: int) -> Any:
         """K' over a wedge."""
-        import flint
-
         rows = [
             [self.balls.rational(row[along]) + self.ball(Fraction(0), slope) * self.balls.rational(row[1 - along])]
             for row in cones.frame
@@ -337,8 +330,6 @@ class _Between:
 
 def _angle(between: _Between, zero: Image, index: int) -> Any:
     """A ball of the angle of W^u and W^s at a state."""
-    import flint
-
     slopes = [flint.arb_mat(hit.derivative) for hit in zero.slopes.hits]
     start = between.tangent(between.leave, zero.slopes.ends[0], 0)
     end = between.tangent(between.come, zero.slopes.ends[1], 1)
@@ -354,8 +345,6 @@ def _carried(vector: Any, slopes: list[Any]) -> Any:
 
     It is kept as t + kappa t', t a point and t' orthogonal to it: maps that draw directions together shrink kappa.
     """
-    import flint
-
     image, kappa = flint.arb_mat([[component, 0] for component in vector.entries()]), flint.arb(0)
     for slope in [*slopes, None]:
         x, y = ((image[row, 0] + kappa.mid() * image[row, 1]).mid() for row in (0, 1))

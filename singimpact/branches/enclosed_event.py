@@ -19,6 +19,7 @@ from fractions import Fraction
 from math import ceil
 from typing import Any, NamedTuple
 
+import flint
 import numpy as np
 
 from singimpact.algebra.balls import BITS_A_DIGIT, Balls, as_rational
@@ -338,8 +339,6 @@ def rate_over(kind: str, closing: BallClosing, operator: Krawczyk, point: Point,
     ------
     Refused : a flight over the box is not enclosed. ZeroDivisionError : D F may be singular on it.
     """
-    import flint
-
     hits = closing.bends(point, radius)
     tangent = operator.tangent_over(closing.matrix(closing.slopes(point, radius)))
     total, change = flint.arb_mat([[1, 0], [0, 1]]), flint.arb_mat([[0, 0], [0, 0]])

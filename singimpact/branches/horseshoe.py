@@ -21,6 +21,7 @@ from itertools import product, takewhile
 from math import ceil, sqrt
 from typing import Any, NamedTuple
 
+import flint
 import numpy as np
 
 from singimpact.algebra.balls import BITS_A_DIGIT, as_rational
@@ -214,16 +215,14 @@ class _Route:
 
     def _image(self, one: CrossedSet, other: CrossedSet, impacts: int) -> _Image:
         """The image of one set under n impacts, in the coordinates of another one."""
-        import flint
-
         landed = image_of(self.map, one.centre, impacts)
         off = [entry - self.map.balls.rational(centre) for entry, centre in zip(landed, other.centre, strict=True)]
         off[0] -= round(float(off[0].mid()) / self.period) * self.map.period
         (a, b), (c, d) = other.frame
         det = a * d - b * c
-        inverse = self._matrix(((d / det, -b / det), (-c / det, a / det)))
+        inverse = self.cones.matrix(((d / det, -b / det), (-c / det, a / det)))
         offset = inverse * flint.arb_mat([[entry] for entry in off])
-        M = inverse * derivative_over(self.map, one.centre, one.box, impacts) * self._matrix(one.frame)
+        M = inverse * derivative_over(self.map, one.centre, one.box, impacts) * self.cones.matrix(one.frame)
         u, s, m12, m21, m22 = (upper(entry) for entry in (offset[0, 0], offset[1, 0], M[0, 1], M[1, 0], M[1, 1]))
         if M[0, 0].contains(0) or not M[0, 0].is_finite():
             raise Refused("a set is not shown to be stretched")
@@ -247,11 +246,6 @@ class _Route:
         spread = [abs(row[0] * one.frame[0][q] + row[1] * one.frame[1][q]) * one.radii[q] for q in (0, 1)]
         return least(self._xi(one.centre)) - sum(spread) > home.radii[0]
 
-    def _matrix(self, rows: Any) -> Any:
-        import flint
-
-        return flint.arb_mat([[self.map.balls.rational(part) for part in row] for row in rows])
-
 
 def _rows(frame: Any) -> tuple[Pair, Pair]:
     (a, b), (c, d) = frame
@@ -264,8 +258,6 @@ def _unit(vector: Array) -> Array:
 
 def _entropy(short: int, long: int) -> Certified:
     """ln x for x^-short + x^-long = 1, x > 1, in balls."""
-    import flint
-
     low, high = flint.arb(1), flint.arb(2)  # 1 + 1 > 1, and 2^-short + 2^-long <= 1
     for _ in range(60):
         middle = ((low + high) / 2).mid()

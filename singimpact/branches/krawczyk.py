@@ -14,6 +14,7 @@ from fractions import Fraction
 from math import ceil
 from typing import Any, Protocol
 
+import flint
 import numpy as np
 
 from singimpact.algebra.balls import BITS_A_DIGIT, Balls, as_rational
@@ -121,16 +122,12 @@ class Krawczyk:
         ------
         ZeroDivisionError : the columns of the free unknowns may be dependent.
         """
-        import flint
-
         assert self.held is not None
         rates = (self.Y * self._columns(matrix, self.free)).solve(self.Y * self._columns(matrix, [self.held])).entries()
         return [*(-rate for rate in rates[: self.held]), flint.arb(1), *(-rate for rate in rates[self.held :])]
 
     @staticmethod
     def _columns(matrix: Any, kept: list[int]) -> Any:
-        import flint
-
         return flint.arb_mat([[row[j] for j in kept] for row in matrix.table()])
 
     def solved(self, point: Point) -> Point:
@@ -160,8 +157,6 @@ class Krawczyk:
         ----------
         step : of Newton's method at the point. spread : of the held unknown, at most the radius.
         """
-        import flint
-
         try:
             slopes = self.equations.slopes(point, radius)
         except Refused:
@@ -218,15 +213,11 @@ def upper(ball: Any) -> Fraction:
     >>> 1.75 <= upper(flint.arb(-1.5, 0.25)) < 1.76
     True
     """
-    import flint
-
     return as_rational(flint.arb(abs(ball).upper()))
 
 
 def least(ball: Any) -> Fraction:
     """A rational that is at most the size of every number in a ball."""
-    import flint
-
     return as_rational(flint.arb(abs(ball).lower()))
 
 
@@ -245,14 +236,10 @@ def _fastest(slopes: Any) -> int:
 
 
 def _round(balls: Balls, radius: Fraction) -> Any:
-    import flint
-
     return flint.arb(0, balls.rational(radius).upper())
 
 
 def _middles(matrix: Any) -> Any:
-    import flint
-
     return flint.arb_mat([[flint.arb(part.mid()) for part in row] for row in matrix.table()])
 
 
@@ -321,8 +308,6 @@ def _enclosed(orbit: BallClosing, states: list[Fraction], digits: int) -> Enclos
 
 def _multipliers(total: Any, digits: int) -> tuple[Any, bool | None]:
     """Eigenvalues of the derivative of the return map, and whether they lie within the unit circle."""
-    import flint
-
     half, determinant = (total[0, 0] + total[1, 1]) / 2, total.det()
     under = half * half - determinant
     if under > 0:

@@ -14,7 +14,7 @@ from singimpact.branches.saddle_arcs import LocalArc, checked_saddle, directions
 from singimpact.branches.solutions import orbit_period
 from singimpact.dynamics.growth import LEFT, LOST, NATURAL, TORN, Carried, Piece
 from singimpact.dynamics.invariant_arcs import before, model_step
-from singimpact.flights.flight_count import counted
+from singimpact.flights.results import counted
 from singimpact.inputs import checked_keywords, refuse
 from singimpact.oscillator.wall_acceleration import acceleration, largest_push
 from singimpact.result import Result

@@ -100,7 +100,7 @@ class PeriodicOrbit(Result):
         >>> from singimpact.impact_oscillator import linear
         >>> pair = linear("2.8", "-0.5", "0.8").replace(upper="0.5")
         >>> [orbit.symmetric for orbit in pair.periodic("lu", 1)]
-        [True]
+        [True, True]
         """
         if self.wall is None or len(self.wall) % 2 or self.k % 2 == 0:
             return False

@@ -18,11 +18,14 @@ cone |xi| <= L_s |eta|, and with |m22| + L_s |m21| < 1 they converge to p: they 
 graphs are pieces of smooth manifolds, so |w'| <= L holds at every point.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from math import frexp
 from typing import Any
+
+import flint
 
 from singimpact.algebra.balls import as_rational
 from singimpact.algebra.numbers import exact
@@ -103,10 +106,8 @@ class Cones:
         return self._known[rounded]
 
     def _shown(self, reach: Fraction) -> Wedge:
-        import flint
-
         spread = self.state(Fraction(0), Fraction(0), (reach, reach))[1]
-        M = self._matrix(self.coordinates) * self._derivative(spread) * self._matrix(self.frame)
+        M = self.matrix(self.coordinates) * self._derivative(spread) * self.matrix(self.frame)
         (m11, m12), (m21, m22) = [[abs(entry) for entry in row] for row in M.table()]
         far, m12, m21, m22 = flint.arb(m11.lower()), *(flint.arb(entry.upper()) for entry in (m12, m21, m22))
         if not far > 1:
@@ -134,16 +135,13 @@ class Cones:
         """D R over the box of these radii round the saddle."""
         return derivative_over(self.map, self.centre, radii, int(self.saddle.n))
 
-    def _matrix(self, rows: list[list[Fraction]]) -> Any:
-        import flint
-
+    def matrix(self, rows: Sequence[Sequence[Fraction]]) -> Any:
+        """Rational rows as a matrix of balls."""
         return flint.arb_mat([[self.map.balls.rational(part) for part in row] for row in rows])
 
 
 def derivative_over(flown: EnclosedMap, centre: Pair, radii: Pair, impacts: int) -> Any:
     """D G^m over a box, for m impacts, each of which is shown to be smooth."""
-    import flint
-
     total = flint.arb_mat([[1, 0], [0, 1]])
     for _ in range(impacts):
         hit = smooth(flown(centre, radii))

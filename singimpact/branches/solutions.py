@@ -14,6 +14,7 @@ from singimpact.branches.resting import free_orbit_at
 from singimpact.branches.wall_closing import WallClosing
 from singimpact.flights.family import family
 from singimpact.flights.impact_map import impact_map
+from singimpact.flights.walls import at_walls
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION
 from singimpact.status import Status
@@ -109,7 +110,7 @@ def visible(closing: Closing, point: Array, osc: Oscillator) -> bool:
         return False
     launches = (float(tau[0]), float(v[0])) if tau.size == 1 else (tau, v)  # two floats are faster
     walls = np.array(closing.word) if isinstance(closing, WallClosing) else None
-    step = impact_map(osc, *launches, wall=walls)
+    step = impact_map(osc, *launches) if walls is None else at_walls(impact_map, osc, walls, launches)
     flown, status = np.atleast_1d(step.flight_time), np.atleast_1d(step.status)
     with np.errstate(invalid="ignore"):
         same = (np.abs(flown - times) <= SETTINGS.near * times) & np.isin(status, (Status.hit, Status.graze))

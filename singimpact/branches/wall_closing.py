@@ -140,8 +140,8 @@ def closed_words(osc: Oscillator, closing: WallClosing, start: tuple[Array, Arra
     fast = np.maximum(ends.v[:-1].max(axis=0), 1e-300)
     misses = np.abs(np.log(share[good])) + np.abs(ends.v[-1, good] - ends.v[0, good]) / fast[good]
     solutions: list[Array] = []
-    kept = SETTINGS.kept if isinstance(closing.family, LinearFamily) else SETTINGS.fewer
-    for at in good[np.argsort(misses, kind="stable")[:kept]].tolist():
+    most = SETTINGS.kept if isinstance(closing.family, LinearFamily) else SETTINGS.fewer
+    for at in good[np.argsort(misses, kind="stable")[:most]].tolist():
         times = ends.tau[0, at] + (ends.tau[:-1, at] - ends.tau[0, at]) / share[at]
         near = _approached(closing, np.concatenate([times, ends.v[:-1, at]]), period)
         if near is None or any(_equal(closing, near, other, period) for other in solutions):

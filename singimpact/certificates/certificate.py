@@ -35,16 +35,14 @@ from singimpact.oscillator.model import Oscillator, require_rebound
 from singimpact.status import Status
 from singimpact.store import write_text
 
-CHECKER = Path(__file__).with_name("checker")
-"""The second program: `python checker FILE.json`."""
+CHECKER = Path(__file__).with_name("checker")  # the second program: `python checker FILE.json`
+# Distance, at most, within which an orbit is certified to be alone: the second program has no frames for boxes.
 UNIQUE = Fraction(1, 10**8)
-"""Distance, at most, within which an orbit is certified to be alone: the second program has no frames for boxes."""
 DIGITS = 12  # of a state, at least
 SERIES_DIGITS, LOOSER = 18, 1.01  # digits of the coefficients of gamma; factor by which bounds are written larger
 FREER = 1.2  # that of the residual of nonlinear models, whose series the second program cuts on a disc of its own
 IMPACT = ("flight_time", "velocity", "tau", "v")
-LOST, LOOSE = 6, 1000
-"""Digits that are left out of a multiplier, and factor of its radius."""
+LOST, LOOSE = 6, 1000  # digits that are left out of a multiplier, and factor of its radius
 
 
 @dataclass(frozen=True)

@@ -23,8 +23,8 @@ from typing import Any
 
 from flint import fmpq, fmpq_mpoly_ctx
 
+# Of a number, of a certificate, of a variable, and of a product: more is refused before it is built.
 DIGITS, NAMES, EXPONENT, TERMS = 4_000, 40, 1_000, 4_000_000
-"""Of a number, of a certificate, of a variable, and of a product: more is refused before it is built."""
 SECONDS = 9.0  # of CPU, for a certificate
 ENDS = ("-oo", "oo")
 
@@ -479,6 +479,7 @@ def flight(data: Any, letters: Letters) -> str:
 
 
 EVERY, ORDERED = {"kind", "says", "variables"}, {"weights", "order"}
+# What shows each kind, and the fields that it has beside those of every certificate.
 KINDS = {
     "positive": (positive, {"numerator", "denominator", "sign", "box", "degree", "raised", "expansion"}),
     "chain": (chain, {"polynomial", "places", "box", "roots", "all"}),
@@ -490,7 +491,6 @@ KINDS = {
     "motion": (motion, {"height", "acceleration", "force", "launch", "landing"} | ORDERED),
     "flight": (flight, {"rise", "acceleration", "force", "launch", "landing"} | ORDERED),
 }
-"""What shows each kind, and the fields that it has beside those of every certificate."""
 INNER = {
     "places": {"at", "sign", "degree", "raised", "expansion"},
     "left": {"outer", "images"},

@@ -5,9 +5,8 @@ from typing import Any
 import click
 
 from singimpact.cli.model_options import model_options, take_model
-from singimpact.cli.output import as_json_text, columns, save, save_once, suffix_of
+from singimpact.cli.output import as_json_text, columns, picture_option, save, save_once, whole_option
 from singimpact.inputs import refuse
-from singimpact.store import require_writable
 
 
 @click.command()
@@ -16,15 +15,9 @@ from singimpact.store import require_writable
 @click.option("--v", nargs=2, metavar="LOW HIGH", help="Window of velocities.  [default: 0 2]")
 @click.option("--x", nargs=2, metavar="LOW HIGH", help="Without t in f and g: window of x at the start.")
 @click.option("--xdot", nargs=2, metavar="LOW HIGH", help="The same of x'.  [default: -2 2]")
-@click.option("--size", type=click.IntRange(2, 10_000), default=600, show_default=True, help="States a side.")
-@click.option(
-    "--impacts",
-    type=click.IntRange(1, 10**7),
-    default=20_000,
-    show_default=True,
-    help="Of an orbit that does not settle.",
-)
-@click.option("--workers", type=click.IntRange(1, 1024), help="Processes.  [default: threads, one for each core]")
+@whole_option("--size", 2, 10_000, "States a side.", 600)
+@whole_option("--impacts", 1, 10**7, "Of an orbit that does not settle.", 20_000)
+@whole_option("--workers", 1, 1024, "Processes.  [default: threads, one for each core]")
 @click.option(
     "--layer",
     type=click.Choice(["for-ever", "first-chatter"]),
@@ -33,7 +26,7 @@ from singimpact.store import require_writable
     help="Draw the attractors, or the states whose first chatter completes.",
 )
 @click.option("--keep", metavar="FILE", help="Store results in this file (.npz or .zarr), and resume from it.")
-@click.option("-o", "--output", metavar="FILE.png", required=True, help="The picture: .png, .pdf or .svg.")
+@picture_option(required=True)
 @click.option("--json", "as_json", is_flag=True, help="Give the shares of the classes as JSON.")
 def command(
     size: int,
@@ -48,8 +41,6 @@ def command(
 
     An (n, k) orbit has n impacts in k periods of the forcing. A model without t has a grid of starts off the wall.
     """
-    suffix_of(output)
-    require_writable(output)
     keep = options.pop("keep")
     ends = {name: options.pop(name) for name in ("tau", "v", "x", "xdot")}
     model = take_model(options)

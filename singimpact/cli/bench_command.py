@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from singimpact.cli.output import as_json_text, columns, count_option, emit, markdown, output_options, page_format, save
+from singimpact.cli.output import as_json_text, columns, emit, markdown, output_options, page_format, save, whole_option
 from singimpact.inputs import InputError, require_known
 from singimpact.progress import ProgressLine
 from singimpact.store import folder, write_text
@@ -212,9 +212,9 @@ if TYPE_CHECKING:
 @click.option("--quick", is_flag=True, help="Fewer cases, states and rounds, within two minutes.")
 @click.option("--plots", metavar="DIR", help="Write a picture of time against error for each group into this folder.")
 @page_format(", of the group public, with a .csv and a .png beside it")
-@click.option("--states", type=click.IntRange(1, 10**9), default=100_000, show_default=True, help="How many states.")
-@click.option("--seed", type=click.IntRange(0), default=0, show_default=True, help="Seed of the random states.")
-@click.option("--workers", type=click.IntRange(1, 1024), help="Processes.  [default: one for each core]")
+@whole_option("--states", 1, 10**9, "How many states.", 100_000)
+@whole_option("--seed", 0, None, "Seed of the random states.", 0)
+@whole_option("--workers", 1, 1024, "Processes.  [default: one for each core]")
 @click.option("--keep", metavar="FILE.npz", help="Store results in this file, and resume from it.")
 @click.option(
     "--family",
@@ -223,9 +223,9 @@ if TYPE_CHECKING:
     show_default=True,
     help="Of random states: linear and cubic, steep layers, or f with t.",
 )
-@count_option("--balls", 1000, "Steep states flown in balls.")
-@count_option("--digits-checks", 100, "States in balls that are also flown with digits=20.")
-@count_option("--digit-pairs", 200, "Steep states enclosed twice, with digits=20 and digits=40.")
+@whole_option("--balls", 0, None, "Steep states flown in balls.", 1000)
+@whole_option("--digits-checks", 0, None, "States in balls that are also flown with digits=20.", 100)
+@whole_option("--digit-pairs", 0, None, "Steep states enclosed twice, with digits=20 and digits=40.", 200)
 @click.option("--store", is_flag=True, help="Store the ratios of the group limit in place of those of the package.")
 @output_options
 def command(

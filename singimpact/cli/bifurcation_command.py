@@ -1,12 +1,9 @@
 """`singimpact bifurcation`: settled orbits for many values of a parameter."""
 
-from typing import Any
-
 import click
 
 from singimpact.cli.model_options import model_options, over_option, take_branches, take_model, take_orbits
-from singimpact.cli.output import as_json_text, save, suffix_of
-from singimpact.store import require_writable
+from singimpact.cli.output import as_json_text, picture_option, save, whole_option
 
 
 @click.command()
@@ -14,11 +11,9 @@ from singimpact.store import require_writable
 @over_option
 @click.option("--from", "low", metavar="NUMBER", required=True, help="Its first value.")
 @click.option("--to", "high", metavar="NUMBER", required=True, help="Its last value.")
-@click.option("--points", type=click.IntRange(2, 100_000), default=300, show_default=True, help="Number of values.")
+@whole_option("--points", 2, 100_000, "Number of values.", 300)
 @click.option("--start", nargs=2, metavar="TAU V", default=("0", "0.1"), show_default=True, help="The first state.")
-@click.option(
-    "--impacts", type=click.IntRange(1, 1_000_000), default=200, show_default=True, help="Impacts for each value."
-)
+@whole_option("--impacts", 1, 1_000_000, "Impacts for each value.", 200)
 @click.option(
     "--kept",
     "last_events",
@@ -40,9 +35,9 @@ from singimpact.store import require_writable
     metavar="N K",
     help="Also draw the branches of the model's orbits of N impacts in K periods; may be repeated.",
 )
-@click.option("--workers", type=click.IntRange(1, 1024), help="Processes.  [default: one for each core]")
+@whole_option("--workers", 1, 1024, "Processes.  [default: one for each core]")
 @click.option("--keep", metavar="FILE", help="Store results in this file (.npz or .zarr), and resume from it.")
-@click.option("-o", "--output", metavar="FILE.png", required=True, help="The picture: .png, .pdf or .svg.")
+@picture_option(required=True)
 @click.option("--json", "as_json", is_flag=True, help="Give phase, v and end of chatter for each value as JSON.")
 def command(
     over: str,
@@ -58,15 +53,13 @@ def command(
     keep: str | None,
     output: str,
     as_json: bool,
-    **options: Any,
+    **options: str | None,
 ) -> None:
     """The last impacts of one orbit for each value of a parameter.
 
     amplitude, damping, stiffness and phase move without being named before. Drawn are velocities and phases; with
     --follow also the periodic orbits through the model's own value, stable and unstable ones.
     """
-    suffix_of(output)
-    require_writable(output)
     model = take_model(options)
     from contextlib import nullcontext
 

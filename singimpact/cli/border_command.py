@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from singimpact.cli.model_options import model_options, over_option, take_ends, take_model
-from singimpact.cli.output import as_json_text, columns, save, suffix_of
+from singimpact.cli.output import as_json_text, columns, picture_option, save, whole_option
 from singimpact.inputs import InputError
-from singimpact.store import require_writable
 
 if TYPE_CHECKING:
     from singimpact.branches.border import BorderOrbit
@@ -20,11 +19,11 @@ if TYPE_CHECKING:
 @over_option
 @click.option("--from", "low", metavar="NUMBER", help="Its least value; half of the model's value without it.")
 @click.option("--to", "high", metavar="NUMBER", help="Its largest value; one and a half of the model's without it.")
-@click.option("--periods", type=click.IntRange(1, 1000), default=1, show_default=True, help="Within which it returns.")
-@click.option("--points", type=click.IntRange(2, 1_000_000), default=200, show_default=True, help="Values looked at.")
+@whole_option("--periods", 1, 1000, "Within which it returns.", 1)
+@whole_option("--points", 2, 1_000_000, "Values looked at.", 200)
 @click.option("--digits", type=int, metavar="N", help="Decimal digits, certified where r is a number.")
 @click.option("--cascade", is_flag=True, help="Give edges and attractors beside each; -o does, too.")
-@click.option("-o", "--output", metavar="FILE.png", help="The picture of the first one's cascade: .png, .pdf or .svg.")
+@picture_option("The picture of the first one's cascade: .png, .pdf or .svg.")
 @click.option("--json", "as_json", is_flag=True, help="Give them as JSON.")
 def command(
     over: str,
@@ -34,16 +33,13 @@ def command(
     cascade: bool,
     output: str | None,
     as_json: bool,
-    **options: Any,
+    **options: str | None,
 ) -> None:
     """Border orbits: released at rest at a zero of a_c, back exactly on gamma of such a zero.
 
     There complete chatter becomes incomplete. Beside it the number of impacts changes at edges whose distances shrink
     by mu(r), with attractors between.
     """
-    if output is not None:
-        require_writable(output)
-        suffix_of(output)
     ends = take_ends(options.pop("low"), options.pop("high"))
     model = take_model(options)
     from singimpact.branches.border import border_orbits

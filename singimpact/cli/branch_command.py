@@ -15,9 +15,17 @@ from singimpact.cli.model_options import (
     take_model,
     take_orbits,
 )
-from singimpact.cli.output import as_json_text, blank_axes, columns, save, suffix_of
+from singimpact.cli.output import (
+    as_json_text,
+    blank_axes,
+    columns,
+    csv_option,
+    picture_option,
+    save,
+    whole_option,
+)
 from singimpact.result import one_table
-from singimpact.store import require_writable, write_table
+from singimpact.store import write_table
 
 if TYPE_CHECKING:
     from singimpact.branches.branch import Branch
@@ -30,14 +38,12 @@ if TYPE_CHECKING:
 @over_option
 @click.option("--from", "low", metavar="NUMBER", help="Its least value.  [default: half of the model's value]")
 @click.option("--to", "high", metavar="NUMBER", help="Its largest value.  [default: 1.5 times the model's]")
-@click.option("--points", type=click.IntRange(2, 1_000_000), default=2000, show_default=True, help="At most, each way.")
+@whole_option("--points", 2, 1_000_000, "At most, each way.", 2000)
 @click.option(
     "--height", type=click.Choice(["v", "phase"]), default="v", show_default=True, help="Vertical axis of the picture."
 )
-@click.option(
-    "--csv", metavar="FILE.csv", help="Write one line for each point: branch, parameter, states, multipliers, ..."
-)
-@click.option("-o", "--output", metavar="FILE.png", help="The picture: .png, .pdf or .svg.")
+@csv_option("branch, parameter, states, multipliers, ...")
+@picture_option()
 @click.option("--json", "as_json", is_flag=True, help="Give points and events as JSON.")
 def command(
     orbit: tuple[int, int],
@@ -53,11 +59,6 @@ def command(
 
     Prints folds, period doublings, tori, pitchforks, grazes and hidden impacts, and the end of each branch.
     """
-    for path in (output, csv):
-        if path is not None:
-            require_writable(path)
-    if output is not None:
-        suffix_of(output)
     ends, points = take_ends(options.pop("low"), options.pop("high")), options.pop("points")
     model = take_model(options)
     branches = take_branches(take_orbits(model, orbit, start), over, ends, points)

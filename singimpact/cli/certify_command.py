@@ -6,7 +6,7 @@ import click
 
 from singimpact.branches.events import KINDS, PERIOD_DOUBLING
 from singimpact.cli.model_options import model_options, take_model
-from singimpact.cli.output import emit
+from singimpact.cli.output import emit, whole_option
 from singimpact.inputs import InputError
 from singimpact.store import require_writable
 
@@ -54,7 +54,7 @@ EVENTS = tuple(kind.name for kind in KINDS if kind.is_class)
     help="With gamma: tan(omega_d T)/omega_d at most, T = tau_* - tau; T if nonlinear.  [default: as far as it gets]",
 )
 @click.option("--between", type=(str, str), metavar="LOW HIGH", help="With gamma: for all restitutions of an interval.")
-@click.option("--digits", type=click.IntRange(1, 1000), default=30, show_default=True, help="Significant digits.")
+@whole_option("--digits", 1, 1000, "Significant digits.", 30)
 @click.option("-o", "--output", metavar="FILE.json", help="The certificate.  [default: standard output]")
 def command(files: tuple[str, ...], tau: str | None, v: str | None, **options: Any) -> None:
     """Enclose the impact from (tau, v), its chatter limit, a periodic orbit, an event of its branch, a border orbit or
@@ -102,13 +102,9 @@ def _gamma(files: tuple[str, ...], tau: str | None, options: dict[str, Any]) -> 
     taken = [f"--{name}" for name in ("orbit", "border", "chatter", "horseshoe", "event", "doubling") if options[name]]
     if len(files) > 1 or taken:
         raise InputError(f"certify gamma takes one model: {', '.join([*files[1:], *taken])} is not accepted")
-    if files:
-        if options["model"] is not None:
-            raise InputError(f"{files[0]} and --model {options['model']} name two models: give one of them")
-        options["model"] = files[0]
     if options["output"] is not None:
         require_writable(options["output"])
-    proof = take_model(options).certified_gamma(tau, reach=options["reach"], restitution=options["between"])
+    proof = take_model(options, *files).certified_gamma(tau, reach=options["reach"], restitution=options["between"])
     certificate = certify(proof)
     certificate.check()
     click.echo("\n".join([repr(proof)[1:-1], *proof.notes.values()]), err=True)

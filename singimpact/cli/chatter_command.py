@@ -1,25 +1,20 @@
 """`singimpact chatter`: the time at which infinitely many impacts accumulate."""
 
-from typing import Any
-
 import click
 
 from singimpact.cli.model_options import model_options, take_model
-from singimpact.cli.output import as_json_text, emit, lines_of, number_text, output_options
+from singimpact.cli.output import as_json_text, emit, lines_of, number_text, output_options, state_options, whole_option
 from singimpact.status import Status
 
 
 @click.command()
 @model_options
-@click.option("--tau", metavar="NUMBER", required=True, help="Launch phase.")
-@click.option("--v", metavar="NUMBER", required=True, help="Launch velocity.")
-@click.option("--digits", type=click.IntRange(1, 2000), help="Significant digits.  [default: a double]")
-@click.option(
-    "--impacts", type=click.IntRange(1, 10_000_000), default=1_000_000, show_default=True, help="Impacts at most."
-)
+@state_options
+@whole_option("--digits", 1, 2000, "Significant digits.  [default: a double]")
+@whole_option("--impacts", 1, 10_000_000, "Impacts at most.", 1_000_000)
 @output_options
 def command(
-    tau: str, v: str, digits: int | None, impacts: int, as_json: bool, output: str | None, **options: Any
+    tau: str, v: str, digits: int | None, impacts: int, as_json: bool, output: str | None, **options: str | None
 ) -> None:
     """The accumulation time of a chatter sequence, its error, and the impacts flown before a series gave the rest."""
     osc = take_model(options)

@@ -46,7 +46,7 @@ def command(
     orbits: int | None,
     as_json: bool,
     output: str | None,
-    **options: Any,
+    **options: str | None,
 ) -> None:
     """The points of V_c' where p or phi is singular: tangencies, swans, cusps, and the fold lines between them.
 

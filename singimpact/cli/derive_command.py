@@ -138,8 +138,8 @@ def _picture(name: str) -> bytes:
     from tempfile import TemporaryDirectory
 
     from singimpact.cli.output import save
+    from singimpact.paper.figures import kept_picture
     from singimpact.paper.figures.figure_rendering import drawn
-    from singimpact.paper.figures.registry import kept_picture
 
     with TemporaryDirectory() as directory:
         number = name.removeprefix("figure")

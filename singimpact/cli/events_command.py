@@ -8,11 +8,19 @@ import click
 
 from singimpact.branches.events import KINDS
 from singimpact.cli.model_options import model_options, orbit_options, take_branches, take_ends, take_model, take_orbits
-from singimpact.cli.output import as_json_text, blank_axes, columns, save, suffix_of
+from singimpact.cli.output import (
+    as_json_text,
+    blank_axes,
+    columns,
+    csv_option,
+    picture_option,
+    save,
+    whole_option,
+)
 from singimpact.inputs import InputError
 from singimpact.oscillator.moving_number import value_of
 from singimpact.result import one_table
-from singimpact.store import require_writable, write_table
+from singimpact.store import write_table
 
 if TYPE_CHECKING:
     from singimpact.branches.branch import Branch
@@ -40,12 +48,10 @@ FOLLOWED = tuple(kind.name for kind in KINDS if kind.look is not None)
 @click.option(
     "--event", "kinds", type=click.Choice(FOLLOWED), multiple=True, help="Events of this kind.  [default: all]"
 )
-@click.option("--index", type=click.IntRange(1), help="Only the event with this number in the list of `branch`.")
-@click.option("--points", type=click.IntRange(2, 1_000_000), default=1000, show_default=True, help="At most, each way.")
-@click.option(
-    "--csv", metavar="FILE.csv", help="Write one line for each point: curve, kind, both parameters, states, visible."
-)
-@click.option("-o", "--output", metavar="FILE.png", help="The picture: .png, .pdf or .svg.")
+@whole_option("--index", 1, None, "Only the event with this number in the list of `branch`.")
+@whole_option("--points", 2, 1_000_000, "At most, each way.", 1000)
+@csv_option("curve, kind, both parameters, states, visible.")
+@picture_option()
 @click.option("--json", "as_json", is_flag=True, help="Give points and points of codimension two as JSON.")
 def command(
     orbit: tuple[int, int],
@@ -61,11 +67,6 @@ def command(
 
     Prints the points of codimension two: resonant grazes, cusps, two grazes at once, and others.
     """
-    for path in (output, csv):
-        if path is not None:
-            require_writable(path)
-    if output is not None:
-        suffix_of(output)
     ends, points = take_ends(options.pop("low"), options.pop("high")), options.pop("points")
     index = options.pop("index")
     model = take_model(options)

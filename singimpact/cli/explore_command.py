@@ -37,7 +37,7 @@ def command(
     html: str | None,
     as_json: bool,
     output: str | None,
-    **options: Any,
+    **options: str | None,
 ) -> None:
     """Show Z, H, P and gamma for clearances around the swan that is nearest to the clearance of the model.
 
@@ -48,7 +48,7 @@ def command(
     if "--steps" in sys.argv:
         click.echo("singimpact: --steps is --points now", err=True)
     file = _place(html, output)
-    oscillator = take_model(_with_path(options, path))
+    oscillator = take_model(options, path)
     if as_json:
         emit(as_json_text({"model": oscillator.to_dict(), **_told(_film(oscillator, between, points))}), file)
         return
@@ -77,12 +77,6 @@ def _place(html: str | None, output: str | None) -> str | None:
     if place is not None:
         require_writable(place)
     return place
-
-
-def _with_path(options: dict[str, Any], path: str | None) -> dict[str, Any]:
-    if path is not None and options["model"] is not None:
-        raise InputError(f"{path} and --model {options['model']} name two models: give one of them")
-    return options if path is None else {**options, "model": path}
 
 
 def _show(page: str, file: str | None) -> None:

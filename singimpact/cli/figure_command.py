@@ -9,8 +9,7 @@ import click
 
 from singimpact.cli.output import PICTURES, as_json_text, save_once
 from singimpact.inputs import refuse
-from singimpact.paper.figures import BEYOND, FIGURES
-from singimpact.paper.figures.registry import ACCEPTED
+from singimpact.paper.figures import ACCEPTED, BEYOND, FIGURES
 from singimpact.progress import ProgressLine
 from singimpact.store import folder, require_writable, write_text
 
@@ -61,15 +60,15 @@ def command(which: str, output: str, kind: str, serif: bool, dark: bool, data: b
 
 
 def _made(number: int | str, serif: bool, dark: bool) -> tuple[Any, Any]:
+    from singimpact.paper.figures import kept_picture
     from singimpact.paper.figures.figure_rendering import drawn
-    from singimpact.paper.figures.registry import kept_picture
 
     picture = kept_picture(number)
     return drawn(picture, serif, dark), [picture.title, list(picture.claims)]
 
 
 def _data(number: int | str) -> Any:
-    from singimpact.paper.figures.registry import kept_picture
+    from singimpact.paper.figures import kept_picture
 
     return kept_picture(number).to_dict()
 

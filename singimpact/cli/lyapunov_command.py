@@ -1,11 +1,9 @@
 """`singimpact lyapunov`: both Lyapunov exponents of an orbit."""
 
-from typing import Any
-
 import click
 
 from singimpact.cli.model_options import model_options, take_model
-from singimpact.cli.output import as_json_text, emit, lines_of, output_options
+from singimpact.cli.output import as_json_text, emit, lines_of, output_options, state_options, whole_option
 from singimpact.status import Status
 
 SHOWN = ("exponents", "error", "per_impact", "impacts", "time", "superstable", "status", "transient", "converged")
@@ -14,15 +12,12 @@ SHOWN = ("exponents", "error", "per_impact", "impacts", "time", "superstable", "
 
 @click.command()
 @model_options
-@click.option("--tau", metavar="NUMBER", required=True, help="Launch phase.")
-@click.option("--v", metavar="NUMBER", required=True, help="Launch velocity.")
-@click.option("--impacts", type=click.IntRange(1, 100_000_000), default=10_000, show_default=True, help="Impacts used.")
-@click.option(
-    "--transient", type=click.IntRange(0, 100_000_000), help="Impacts flown before.  [default: until the orbit settles]"
-)
+@state_options
+@whole_option("--impacts", 1, 100_000_000, "Impacts used.", 10_000)
+@whole_option("--transient", 0, 100_000_000, "Impacts flown before.  [default: until the orbit settles]")
 @output_options
 def command(
-    tau: str, v: str, impacts: int, transient: int | None, as_json: bool, output: str | None, **options: Any
+    tau: str, v: str, impacts: int, transient: int | None, as_json: bool, output: str | None, **options: str | None
 ) -> None:
     """Lyapunov exponents per unit of time and per impact, with standard errors.
 

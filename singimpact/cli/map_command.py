@@ -5,7 +5,7 @@ from typing import Any
 import click
 
 from singimpact.cli.model_options import model_options, take_model, wall_option
-from singimpact.cli.output import as_json_text, columns, emit, number_text, output_options
+from singimpact.cli.output import as_json_text, columns, emit, number_text, output_options, whole_option
 from singimpact.inputs import InputError
 from singimpact.status import Status, Wall
 
@@ -16,7 +16,7 @@ FIELDS = ("tau", "v", "flight_time", "status")
 @model_options
 @click.option("--tau", "taus", metavar="NUMBER", multiple=True, required=True, help="Launch phase; may be repeated.")
 @click.option("--v", "vs", metavar="NUMBER", multiple=True, required=True, help="Launch velocity; may be repeated.")
-@click.option("--digits", type=click.IntRange(1, 10_000), help="Significant digits.  [default: a double]")
+@whole_option("--digits", 1, 10_000, "Significant digits.  [default: a double]")
 @click.option("--horizon", metavar="NUMBER", help="Longest flight time that is searched.")
 @wall_option
 @output_options
@@ -28,7 +28,7 @@ def command(
     wall: str | None,
     as_json: bool,
     output: str | None,
-    **options: Any,
+    **options: str | None,
 ) -> None:
     """The impact map G: phase and velocity of the next impact, the flight time, and the status of the flight.
 

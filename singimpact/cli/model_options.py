@@ -43,14 +43,17 @@ def model_options(function: Function) -> Function:
     )
 
 
-def take_model(options: dict[str, Any]) -> ImpactOscillator:
-    """The oscillator that the options name; its options are removed from the mapping.
+def take_model(options: dict[str, str | None], file: str | None = None) -> ImpactOscillator:
+    """The oscillator that the options or a file name; its options are removed from the mapping.
 
     Raises
     ------
     InputError : two models are named, or none is.
     """
     path = options.pop("model")
+    if file is not None and path is not None:
+        raise InputError(f"{file} and --model {path} name two models: give one of them")
+    path = path if file is None else file
     numbers = {name: value for name in LINEAR if (value := options.pop(name)) is not None}
     if path is not None:
         return _from_file(path, numbers)
@@ -61,7 +64,9 @@ def take_model(options: dict[str, Any]) -> ImpactOscillator:
         )
     from singimpact.impact_oscillator import linear
 
-    return linear(**numbers)
+    above = numbers.pop("upper_restitution", None)
+    model = linear(**numbers)
+    return model if above is None else model.replace(upper_restitution=above)
 
 
 def _from_file(path: str, numbers: dict[str, str]) -> ImpactOscillator:

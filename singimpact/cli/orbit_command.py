@@ -6,18 +6,15 @@ from typing import Any
 import click
 
 from singimpact.cli.model_options import model_options, take_model, wall_option
-from singimpact.cli.output import PICTURES, as_json_text, columns, emit, output_options
+from singimpact.cli.output import PICTURES, as_json_text, columns, emit, output_options, state_options, whole_option
 from singimpact.inputs import refuse
 from singimpact.store import written
 
 
 @click.command()
 @model_options
-@click.option("--tau", metavar="NUMBER", required=True, help="Launch phase.")
-@click.option("--v", metavar="NUMBER", required=True, help="Launch velocity.")
-@click.option(
-    "--impacts", type=click.IntRange(1, 10_000_000), default=200, show_default=True, help="Number of impacts."
-)
+@state_options
+@whole_option("--impacts", 1, 10_000_000, "Number of impacts.", 200)
 @click.option("--horizon", metavar="NUMBER", help="Longest flight time that is searched.")
 @wall_option
 @output_options
@@ -29,7 +26,7 @@ def command(
     wall: str | None,
     as_json: bool,
     output: str | None,
-    **options: Any,
+    **options: str | None,
 ) -> None:
     """An orbit of the impact map: impacts, chatter, rest on the wall.
 

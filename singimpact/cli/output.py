@@ -18,9 +18,8 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 def output_options(function: Function) -> Function:
     """The options ``--json`` and ``-o`` of a command that gives text."""
-    function = click.option(
-        "-o", "--output", metavar="FILE", callback=_checked, help="Write to this file instead of standard output."
-    )(function)
+    told = "Write to this file instead of standard output."
+    function = click.option("-o", "--output", metavar="FILE", callback=writable, help=told)(function)
     return click.option("--json", "as_json", is_flag=True, help="Print JSON.")(function)
 
 
@@ -30,16 +29,44 @@ def page_format(more: str = "") -> Callable[[Function], Function]:
     return click.option("--format", "form", type=kinds, default="text", show_default=True, help=told)
 
 
-def count_option(name: str, default: int, told: str) -> Callable[[Function], Function]:
-    """An option that is a number of things, 0 or more."""
-    return click.option(name, type=click.IntRange(0), default=default, show_default=True, help=told)
+def whole_option(
+    name: str, least: int, most: int | None, told: str, default: int | None = None
+) -> Callable[[Function], Function]:
+    """An option that is a whole number from `least` to `most`."""
+    kind = click.IntRange(least, most)
+    return click.option(name, type=kind, default=default, show_default=default is not None, help=told)
 
 
-def _checked(ctx: click.Context, option: click.Parameter, path: str | None) -> str | None:  # noqa: ARG001
+def picture_option(
+    told: str = "The picture: .png, .pdf or .svg.", required: bool = False
+) -> Callable[[Function], Function]:
+    """The option ``-o`` of a command that draws."""
+    return click.option("-o", "--output", metavar="FILE.png", required=required, callback=_drawable, help=told)
+
+
+def csv_option(columns_: str) -> Callable[[Function], Function]:
+    """The option ``--csv`` of a command that follows curves."""
+    told = f"Write one line for each point: {columns_}"
+    return click.option("--csv", metavar="FILE.csv", callback=writable, help=told)
+
+
+def state_options(function: Function) -> Function:
+    """The options ``--tau`` and ``--v``."""
+    function = click.option("--v", metavar="NUMBER", required=True, help="Launch velocity.")(function)
+    return click.option("--tau", metavar="NUMBER", required=True, help="Launch phase.")(function)
+
+
+def writable(ctx: click.Context, option: click.Parameter, path: str | None) -> str | None:  # noqa: ARG001
     """Check the output path before the computation, not after it."""
     if path is not None:
         require_writable(path)
     return path
+
+
+def _drawable(ctx: click.Context, option: click.Parameter, path: str | None) -> str | None:
+    if path is not None:
+        suffix_of(path)
+    return writable(ctx, option, path)
 
 
 def emit(text: str, output: str | None) -> None:

@@ -5,13 +5,12 @@ from typing import Any
 
 import click
 
-from singimpact.cli.output import as_json_text, columns, save, suffix_of
-from singimpact.store import require_writable
+from singimpact.cli.output import as_json_text, columns, picture_option, save
 
 
 @click.command()
 @click.argument("file", metavar="FILE.toml")
-@click.option("-o", "--output", metavar="FILE.png", required=True, help="The picture: .png, .pdf or .svg.")
+@picture_option(required=True)
 @click.option("--json", "as_json", is_flag=True, help="Print the report as JSON.")
 def command(file: str, output: str, as_json: bool) -> None:
     """Draw a scene: a model, a window and layers, from a TOML file.
@@ -20,8 +19,6 @@ def command(file: str, output: str, as_json: bool) -> None:
     discontinuities, gamma, stable-manifolds, foliation, orbits. What is computed, what it took and what came from the
     cache is printed.
     """
-    suffix_of(output)
-    require_writable(output)
     from singimpact.scenes.scene import DPI, Scene
 
     scene = Scene.read(file)

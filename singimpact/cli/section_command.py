@@ -1,33 +1,23 @@
 """`singimpact section`: the states of an orbit once in each period, as numbers or as a picture."""
 
 from pathlib import Path
-from typing import Any
 
 import click
 
 from singimpact.cli.model_options import model_options, take_model
 from singimpact.cli.orbit_command import check_ending, draw
-from singimpact.cli.output import PICTURES, as_json_text, columns, emit, output_options
+from singimpact.cli.output import PICTURES, as_json_text, columns, emit, output_options, state_options, whole_option
 
 
 @click.command()
 @model_options
-@click.option("--tau", metavar="NUMBER", required=True, help="Launch phase.")
-@click.option("--v", metavar="NUMBER", required=True, help="Launch velocity.")
-@click.option(
-    "--impacts", type=click.IntRange(1, 10_000_000), default=2000, show_default=True, help="Number of impacts."
-)
+@state_options
+@whole_option("--impacts", 1, 10_000_000, "Number of impacts.", 2000)
 @click.option("--at", "at", metavar="NUMBER", default="0", show_default=True, help="Time after the start of a period.")
-@click.option(
-    "--skip",
-    type=click.IntRange(0, 10_000_000),
-    default=0,
-    show_default=True,
-    help="Number of first states that are left out.",
-)
+@whole_option("--skip", 0, 10_000_000, "Number of first states that are left out.", 0)
 @output_options
 def command(
-    tau: str, v: str, impacts: int, at: str, skip: int, as_json: bool, output: str | None, **options: Any
+    tau: str, v: str, impacts: int, at: str, skip: int, as_json: bool, output: str | None, **options: str | None
 ) -> None:
     """x and x' of an orbit once in each period of the forcing: a stroboscopic section.
 

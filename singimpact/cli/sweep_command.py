@@ -6,7 +6,7 @@ from typing import Any
 import click
 
 from singimpact.cli.model_options import model_options, take_model
-from singimpact.cli.output import as_json_text, columns, emit, output_options
+from singimpact.cli.output import as_json_text, columns, emit, output_options, state_options, whole_option
 from singimpact.inputs import InputError
 from singimpact.status import Status
 
@@ -16,11 +16,10 @@ from singimpact.status import Status
 @click.option("--over", metavar="NAME", required=True, help="clearance, restitution or a parameter.")
 @click.option("--from", "low", metavar="NUMBER", required=True, help="Its first value.")
 @click.option("--to", "high", metavar="NUMBER", required=True, help="Its last value.")
-@click.option("--points", type=click.IntRange(2, 1_000_000), default=21, show_default=True, help="Number of values.")
-@click.option("--tau", metavar="NUMBER", required=True, help="Launch phase.")
-@click.option("--v", metavar="NUMBER", required=True, help="Launch velocity.")
-@click.option("--impacts", type=click.IntRange(1, 1_000_000), default=200, show_default=True, help="Impacts flown.")
-@click.option("--workers", type=click.IntRange(1, 1024), help="Processes.  [default: one for each core]")
+@whole_option("--points", 2, 1_000_000, "Number of values.", 21)
+@state_options
+@whole_option("--impacts", 1, 1_000_000, "Impacts flown.", 200)
+@whole_option("--workers", 1, 1024, "Processes.  [default: one for each core]")
 @click.option("--keep", metavar="FILE", help="Store results in this file (.npz or .zarr), and resume from it.")
 @output_options
 def command(
@@ -35,7 +34,7 @@ def command(
     keep: str | None,
     as_json: bool,
     output: str | None,
-    **options: Any,
+    **options: str | None,
 ) -> None:
     """The state after the last of many impacts, for values of one parameter.
 

@@ -1,23 +1,21 @@
 """`singimpact threshold`: the velocity below which chatter completes."""
 
-from typing import Any
-
 import click
 
 from singimpact.cli.model_options import model_options, take_model
-from singimpact.cli.output import as_json_text, emit, lines_of, number_text, output_options
+from singimpact.cli.output import as_json_text, emit, lines_of, number_text, output_options, whole_option
 from singimpact.status import Status
 
 
 @click.command()
 @model_options
 @click.option("--tau", metavar="NUMBER", required=True, help="A phase with a_c < 0.")
-@click.option("--digits", type=click.IntRange(1, 2000), help="Significant digits.  [default: a double]")
-@click.option(
-    "--impacts", type=click.IntRange(1, 10_000_000), default=640_000, show_default=True, help="Impacts at most."
-)
+@whole_option("--digits", 1, 2000, "Significant digits.  [default: a double]")
+@whole_option("--impacts", 1, 10_000_000, "Impacts at most.", 640_000)
 @output_options
-def command(tau: str, digits: int | None, impacts: int, as_json: bool, output: str | None, **options: Any) -> None:
+def command(
+    tau: str, digits: int | None, impacts: int, as_json: bool, output: str | None, **options: str | None
+) -> None:
     """The velocity of gamma at tau: chatter completes below it, and is interrupted by lift-off above it."""
     osc = take_model(options)
     from singimpact.dynamics.threshold import threshold

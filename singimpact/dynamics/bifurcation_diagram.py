@@ -237,8 +237,8 @@ def _followed(first: Orbit, flown: tuple[int, int, int]) -> tuple[Orbit, Row]:
         elif last.wall is None:
             grows = bool(chaotic(last.oscillator, tau, v, max(float(last.v.max()), 1e-300))[0])
         else:
-            found = lyapunov(last.oscillator, tau[0], v[0], SETTINGS.exponent, transient=0, wall=_wall(last))
-            grows = bool(found.exponents[0] > 3 * found.error[0])
+            rates = lyapunov(last.oscillator, tau[0], v[0], SETTINGS.exponent, transient=0, wall=_wall(last))
+            grows = bool(rates.exponents[0] > 3 * rates.error[0])
         row = (CHAOS if grows else OTHER, 0.0, 0.0)
     return last, row
 

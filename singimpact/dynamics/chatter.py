@@ -112,13 +112,7 @@ class ChatterLimit(Result):
 
 
 def chatter_limit(
-    osc: Oscillator,
-    tau: Any,
-    v: Any,
-    *,
-    digits: int | None = None,
-    impacts: int = ENDING.impacts,
-    wall: Any = None,
+    osc: Oscillator, tau: Any, v: Any, *, digits: int | None = None, impacts: int = ENDING.impacts, wall: Any = None
 ) -> ChatterLimit:
     """The time at which infinitely many impacts accumulate.
 
@@ -266,7 +260,7 @@ def _last(terms: list[Any]) -> Any:
 def _abreast(osc: Oscillator, states: States, most: int, at: list[int]) -> Iterator[_Flown]:
     """The sequences of some of the states, in blocks in which a formula is evaluated for all states at once."""
     begin, many = 0, 4
-    laws = [_Law(each) for each in ((osc,) if osc.upper is None else (osc, osc.mirrored))]
+    laws = [_Law(model) for model in ((osc,) if osc.upper is None else (osc, osc.mirrored))]
     while begin < len(at):
         block = [_Flown(laws, states, most, index) for index in at[begin : begin + many]]
         going = block
@@ -276,7 +270,7 @@ def _abreast(osc: Oscillator, states: States, most: int, at: list[int]) -> Itera
         _differentiate(osc, [flown for flown in block if flown.over and len(flown.matrices) < len(flown.times) - 1])
         yield from block
         begin += many
-        # as many as have about so many impacts together: each is kept until the block ends
+        # as many as have about so many impacts together: model is kept until the block ends
         many = max(1, min(4 * many, ENDING.kept * len(block) // sum(len(flown.times) for flown in block)))
 
 

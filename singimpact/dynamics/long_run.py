@@ -62,9 +62,7 @@ def lift_offs(model: Oscillator) -> tuple[float, ...]:
 
 def next_lift_off(phases: tuple[float, ...], tau: Array) -> Array:
     """The place in `phases` of the first one after times within a period; -1 where there is none at all."""
-    if not phases:
-        return np.full(tau.size, -1)
-    return np.searchsorted(np.array(phases), tau) % len(phases)
+    return np.full(tau.size, -1) if not phases else np.searchsorted(np.array(phases), tau) % len(phases)
 
 
 def futures(model: Oscillator, phases: tuple[float, ...], classify: Callable[[Array, Array], Array]) -> list[Future]:

@@ -200,8 +200,8 @@ class _Run:
         self.before = 0  # impacts of the transient
         self.first, self.lifted, self.status = True, list[tuple[float, int]](), Status.hit
         # one r = 1 is enough: such a wall has no chatter that ends
-        self.near = 0.0 if any(compare(each.slope_at_rest(), 1) == 0 for each in self.models) else ENDING.near
-        if not self.near and any(chatter_completes(each) for each in self.models):
+        self.near = 0.0 if any(compare(model.slope_at_rest(), 1) == 0 for model in self.models) else ENDING.near
+        if not self.near and any(chatter_completes(model) for model in self.models):
             raise InputError(
                 f"restitution = {shown(str(osc.restitution))} is not accepted: exponents need r < 1, or r = 1 without "
                 "the power q < 1 of the speed by which chatter comes to rest"
@@ -339,8 +339,8 @@ class _Run:
     def _rest(self, at: float) -> None:
         lifted = release(self.here, at)
         # what follows a lift-off is fixed: one at a phase of an earlier one comes again and again
-        earlier = [each for each, wall in self.lifted if wall == self.wall]
-        known = any(periods_between(self.osc, each, lifted) is not None for each in earlier)
+        earlier = [phase for phase, wall in self.lifted if wall == self.wall]
+        known = any(periods_between(self.osc, phase, lifted) is not None for phase in earlier)
         if known or not np.isfinite(lifted):
             self.status = Status.unresolved if np.isnan(lifted) else Status.sticks
         self.lifted.append((lifted, self.wall))

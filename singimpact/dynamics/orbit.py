@@ -66,13 +66,13 @@ class Orbit(Result):
     """
 
     oscillator: Oscillator
-    tau: np.ndarray[Any, Any]
-    v: np.ndarray[Any, Any]
-    kind: np.ndarray[Any, Any]
+    tau: Array
+    v: Array
+    kind: Array
     phases: list[tuple[str, float, float]]
     end: float
     height: float = 0.0
-    wall: np.ndarray[Any, Any] | None = None
+    wall: Array | None = None
 
     def sample(self, t: Any) -> Path:
         """x and x' at times, through flights, chatter and rest.
@@ -105,16 +105,16 @@ class Orbit(Result):
         order = np.argsort(flat, kind="stable")
         out, events = np.full((flat.size, 2), np.nan), (self.tau, self.v, self.kind)
         how = self._last_kind, self.end, self.height
-        place = self.oscillator.upper
-        if self.wall is None or place is None:
+        above = self.oscillator.upper
+        if self.wall is None or above is None:
             out[order] = sampled(self.oscillator, events, *how, flat[order])
         else:
             walls = self.wall[np.maximum(np.searchsorted(self.tau, flat[order], side="right") - 1, 0)]
             lower, upper = order[walls == Wall.lower], order[walls == Wall.upper]
             out[lower] = sampled(self.oscillator, events, *how, flat[lower])
             out[upper] = -sampled(self.oscillator.mirrored, events, *how[:2], 0.0, flat[upper])
-            # rounding next to an impact would place the mass behind the other wall
-            out[:, 0] = np.clip(out[:, 0], as_float(self.oscillator.clearance), as_float(place))
+            # rounding next to an impact would above the mass behind the other wall
+            out[:, 0] = np.clip(out[:, 0], as_float(self.oscillator.clearance), as_float(above))
         return Path(out[:, 0].reshape(times.shape)[()], out[:, 1].reshape(times.shape)[()])
 
     @property

@@ -9,17 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from singimpact.algebra.numbers import Array
-from singimpact.dynamics.attractors import (
-    AWAY,
-    CHAOS,
-    CHATTER,
-    GONE,
-    OTHER,
-    RESPONSE,
-    RESTING,
-    STUCK,
-    apart,
-)
+from singimpact.dynamics.attractors import AWAY, CHAOS, CHATTER, GONE, OTHER, RESPONSE, RESTING, STUCK, apart
 from singimpact.dynamics.lift_off import release
 from singimpact.dynamics.long_run import growth
 from singimpact.dynamics.settling import Study, at_rest, chattering

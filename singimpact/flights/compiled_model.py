@@ -15,7 +15,6 @@ from singimpact.algebra.numbers import Array, as_float
 from singimpact.algebra.precision import kept_property
 from singimpact.codegen.scalar import scalar
 from singimpact.codegen.taylor_recurrence import Recurrence
-from singimpact.flights import flight_count
 from singimpact.flights.bind import LAW, Emitted
 from singimpact.flights.flat_numbers import TABLES, walls_laid_out
 from singimpact.flights.horizons import Allowance, horizon_of, reach_of, steps_of
@@ -27,15 +26,13 @@ from singimpact.flights.kernels.hits import AT_REST, NOT_REFINED
 from singimpact.flights.kernels.state import ACROSS, LANES, VELOCITY, VELOCITY_BY_TAU, VELOCITY_BY_V
 from singimpact.flights.limits import LIMITS
 from singimpact.flights.machine import FEW, Bound, Called, Machine, compilable, machine_of, one_by_one
-from singimpact.flights.model_numbers import (
-    has_table,
-    recurrence_of,
-)
+from singimpact.flights.model_numbers import has_table, recurrence_of
+from singimpact.flights.results import count_flights
 from singimpact.flights.states import late
 from singimpact.inputs import InputError
 from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.phase import reduced
+from singimpact.oscillator.period import reduced
 from singimpact.oscillator.rebound import rho_of
 
 PREPARATIONS = {"linear_entry": entries.PREPARE, "batch_entry": entries.PREPARE_BATCH}
@@ -81,19 +78,19 @@ class CompiledModel:
         self.form = linear_form(osc)
         self.linear = flow is None and has_table(osc)
         self.walls = (osc,) if osc.upper is None else (osc, osc.mirrored)
-        self.constant_restitution = not any(names_in(each.restitution) for each in self.walls)
+        self.constant_restitution = not any(names_in(item.restitution) for item in self.walls)
         self.flow = None if self.linear else flow or recurrence_of(osc)
-        flows = [self.flow, *(None if self.linear else recurrence_of(each) for each in self.walls[1:])]
-        texts, laws = zip(*(_law_of(each) for each in self.walls), strict=True)
+        flows = [self.flow, *(None if self.linear else recurrence_of(item) for item in self.walls[1:])]
+        texts, laws = zip(*(_law_of(item) for item in self.walls), strict=True)
         self.sizes, self.flat, self.rho = walls_laid_out(osc, allowance, flows, laws)
         flats, rhos = np.split(self.flat, len(self.walls)), np.split(self.rho, len(self.walls))
-        self.emitted = [Emitted(each.source if each else "", text) for each, text in zip(flows, texts, strict=True)]
+        self.emitted = [Emitted(item.source if item else "", text) for item, text in zip(flows, texts, strict=True)]
         self.machine: Machine = machine_of(Emitted(steps=not self.linear))
         self.main = self.machine.emitted.entries[0]
         self.recurrences = [
-            Called(machine_of(Emitted(each.flow)), numbers)
-            for each, numbers in zip(self.emitted, flats, strict=True)
-            if each.flow
+            Called(machine_of(Emitted(item.flow)), numbers)
+            for item, numbers in zip(self.emitted, flats, strict=True)
+            if item.flow
         ]
         self.laws = [
             Called(machine_of(Emitted(rho=text)), numbers) for text, numbers in zip(texts, rhos, strict=True) if text
@@ -225,8 +222,7 @@ class CompiledModel:
     @kept_property
     def sometimes_kept(self) -> bool:
         """Whether some launches of a Taylor flow are proved not to return before they are flown."""
-        from singimpact.flights.no_return.averaged import bounds_of
-        from singimpact.flights.no_return.barrier import fastest_kept
+        from singimpact.flights.no_return.barrier import bounds_of, fastest_kept
 
         # of a mass between two walls the other wall may stop it
         one_wall = not self.linear and len(self.walls) == 1
@@ -262,7 +258,7 @@ class CompiledModel:
         ----------
         pushes : a_c at the launches of a Taylor flow, nan where it is not known.
         """
-        flight_count.add(int(np.count_nonzero(v)))
+        count_flights(int(np.count_nonzero(v)))
         return self._searched(entries.HITS, tau, v, pushes)
 
     def drops(self, tau: Array, v: Array, heights: Array) -> tuple[Array, Array]:
@@ -272,7 +268,7 @@ class CompiledModel:
         ----------
         heights : x - c > 0 at the starts.
         """
-        flight_count.add(tau.size)
+        count_flights(tau.size)
         return self._searched(entries.DROPS, tau, v, heights)
 
     def _searched(self, kind: int, tau: Array, v: Array, quantities: Array | None) -> tuple[Array, Array]:
@@ -363,7 +359,7 @@ class CompiledModel:
             code, columns = bound.one(tau, v, *quantities)
             self._bound[kind] = bound
             if kind in SEARCHES:
-                flight_count.add(1)
+                count_flights(1)
             if code >= ACROSS and code - ACROSS in (0, NOT_REFINED):
                 for column in (VELOCITY, VELOCITY_BY_TAU, VELOCITY_BY_V):
                     columns[column] = -columns[column]
@@ -385,7 +381,7 @@ class CompiledModel:
 
     def releases(self, tau: Array, removed: Array) -> tuple[Array, Array]:
         """Codes and flight time, velocity, depth and bound, shape (10, n), of masses released at rest."""
-        flight_count.add(tau.size)
+        count_flights(tau.size)
         status, out, orders = np.empty(tau.size, np.int8), np.full((10, tau.size), np.nan), removed.astype(float)
         self._work(entries.RELEASES, (tau, tau, orders), out, status)
         return self._at_walls(status, out)
@@ -400,13 +396,13 @@ class CompiledModel:
         if entry is None:
             try:
                 flown, code = self.interpreter.segment(tau, v, near, self.rho, out)
-                flight_count.add(flown)
+                count_flights(flown)
                 return self._rows_at_walls(out[:flown]), code
             except LEFT_OPEN:
                 entry = self._here(self.main, self.laws)
         states = np.array([tau]), np.array([v]), np.concatenate([[near], self.rho])
         flown = self._call(entry, (entries.SEGMENT, count, 0), states, out, status)
-        flight_count.add(flown)
+        count_flights(flown)
         return self._rows_at_walls(out[:flown]), int(status[0])
 
     def _rows_at_walls(self, rows: Array) -> Array:
@@ -514,7 +510,7 @@ class CompiledModel:
             out[:, chosen] = rows
             begin += codes.size
             flown = int(rows[2].sum())
-            flight_count.add(flown)
+            count_flights(flown)
             many = max(1, min(TABLES.block, 4 * many, TABLES.block * codes.size // max(flown, 1)))
         return status, out
 

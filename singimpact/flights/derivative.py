@@ -158,8 +158,8 @@ def log_determinant(
     """
     if wall is not None and wall.any():
         logs = np.empty(tau.size)
-        for each, model, side in ((0, osc, 1), (1, osc.mirrored, -1)):
-            at = wall == each
+        for side_of, model, side in ((0, osc, 1), (1, osc.mirrored, -1)):
+            at = wall == side_of
             logs[at] = log_determinant(model, tau[at], v[at], time[at], side * velocity[at])
         return logs
     loss = _integral_of_damping(osc, tau, v, time)

@@ -8,8 +8,8 @@ import numpy as np
 from singimpact.algebra.expressions import evaluate
 from singimpact.algebra.numbers import Array, as_float, float_array
 from singimpact.algebra.rings import DOUBLES
-from singimpact.flights import flight_count
 from singimpact.flights.compiled_model import compiled_model
+from singimpact.flights.results import count_flights
 from singimpact.flights.states import States
 from singimpact.inputs import InputError
 from singimpact.oscillator.model import Oscillator
@@ -75,7 +75,7 @@ def many_paths(osc: Oscillator, tau: Any, v: Any, times: Sequence[Array]) -> lis
     >>> many_paths(Oscillator("0", "-2", 0, 1), np.zeros(2), np.array([3.0, 0.0]), [np.array([1.0]), np.array([-1.0])])
     [array([[2., 1.]]), array([[-1.,  2.]])]
     """
-    flight_count.add(len(times))
+    count_flights(len(times))
     model = compiled_model(osc)
     starts = model.near(np.asarray(tau, dtype=float))
     counts, at = np.array([own.size for own in times], dtype=int), np.concatenate([*times, np.zeros(0)])
@@ -101,7 +101,7 @@ def along(osc: Oscillator, tau: Array, v: Array, which: Array, times: Array) -> 
     used, at, counts = np.unique(which, return_inverse=True, return_counts=True)
     model, speeds = compiled_model(osc), v[used]
     launches = model.near(tau[used])
-    flight_count.add(used.size)
+    count_flights(used.size)
     if not model.linear:
         return model.follow_all(launches, speeds, counts, times)
     return model.places(launches[at], speeds[at], times)
@@ -135,7 +135,7 @@ def ends(osc: Oscillator, tau: Array, v: Array, times: Array) -> tuple[Array, Ar
     >>> [part.tolist() for part in ends(Oscillator("0", "-2", 0, 1), np.zeros(1), np.full(1, 3.0), np.full(1, 3.0))]
     [[0.0], [-3.0], [-2.0]]
     """
-    flight_count.add(tau.size)
+    count_flights(tau.size)
     model, rows, ended = compiled_model(osc), np.full((tau.size, 2), np.nan), np.isfinite(times)
     start, velocity, time = model.near(tau)[ended], v[ended], times[ended]
     if model.linear:

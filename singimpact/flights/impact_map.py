@@ -25,7 +25,6 @@ from singimpact.flights.rebound_law import rebound
 from singimpact.flights.response import response
 from singimpact.flights.results import SCALAR_STATUS, Flight, Step
 from singimpact.flights.states import States
-from singimpact.flights.walls import at_walls
 from singimpact.inputs import refuse
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration_at
@@ -47,7 +46,6 @@ def first_hit(
     horizon: Any = None,
     steps: int | None = None,
     out: Mapping[str, Array] | None = None,
-    wall: Any = None,
 ) -> Flight:
     """The first hit of the obstacle by the flight from (tau, v).
 
@@ -64,8 +62,6 @@ def first_hit(
         fewer where f and g have many products and functions (700 of 100).
     out : arrays that take the results, by field: {"flight_time": a, "velocity": b}, memory maps too. Of the shape of
         the states, doubles (`status` and `cause`: int8). Other fields than these, `status` and `cause` are not kept.
-    wall : of the states of a model with two walls, "lower" (also without it) or "upper"; an array of them, or of 0 and
-        1.
 
     Returns
     -------
@@ -78,9 +74,6 @@ def first_hit(
     >>> hit.flight_time.tolist(), hit.velocity.tolist(), hit.status.tolist()
     ([0.0, 1.0, 3.0], [0.0, -1.0, -3.0], [2, 0, 0])
     """
-    if wall is not None:
-        fly = partial(first_hit, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps, out=out)
-        return at_walls(fly, osc, wall, (tau, v), out)  # type: ignore[no-any-return]
     flown = None
     if type(tau) is float and type(v) is float and digits is tolerance is horizon is steps is None and out is None:
         fields, flown = plain_fields(compiled_model(osc), tau, v)
@@ -104,7 +97,6 @@ def impact_map(
     horizon: Any = None,
     steps: int | None = None,
     out: Mapping[str, Array] | None = None,
-    wall: Any = None,
 ) -> Step:
     """The impact map G(tau, v) = (tau + T, -r x'(T)); parameters as in `first_hit`.
 
@@ -119,9 +111,6 @@ def impact_map(
     >>> step.tau, step.v, step.status
     (4.0, 1.5, np.int8(0))
     """
-    if wall is not None:
-        fly = partial(impact_map, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps, out=out)
-        return at_walls(fly, osc, wall, (tau, v), out)  # type: ignore[no-any-return]
     flown = None
     if type(tau) is float and type(v) is float and digits is tolerance is horizon is steps is None and out is None:
         model = compiled_model(osc)

@@ -20,8 +20,16 @@ from singimpact.oscillator.model import Oscillator, require_rebound
 from singimpact.status import Status, status_array
 
 KEPT = (
-    "flight_time", "depth", "bound", "condition", "velocity_condition", "time_error", "velocity_error", "cause", "wall",
-)  # fmt: skip
+    "flight_time",
+    "depth",
+    "bound",
+    "condition",
+    "velocity_condition",
+    "time_error",
+    "velocity_error",
+    "cause",
+    "wall",
+)
 
 
 @lru_cache(maxsize=64)

@@ -89,11 +89,11 @@ def _escaping(osc: Oscillator, states: States, index: int, outcome: Outcome) -> 
     if osc.upper is not None:
         return outcome
     form, numbers = linear_form(osc), outcome[1]
-    time, speed, place = (np.array([float(value)]) for value in numbers[:3])
+    time, speed, height = (np.array([float(value)]) for value in numbers[:3])
     proved = (
-        never_turns(osc, place, speed)
+        never_turns(osc, height, speed)
         if form is None
-        else never_returns(osc, form, states.tau[[index]], time, place, speed)
+        else never_returns(osc, form, states.tau[[index]], time, height, speed)
     )
     return (int(Status.escaped), numbers) if proved[0] else outcome
 

@@ -31,6 +31,7 @@ from singimpact.flights.rebound_law import rebound
 from singimpact.flights.results import SCALAR_STATUS
 from singimpact.flights.states import States, as_written, require_room
 from singimpact.flights.undecided import Fates, escapes, refined_hit
+from singimpact.flights.walls import at_walls
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.model import Oscillator
 from singimpact.result import Result, in_words
@@ -273,8 +274,7 @@ class _Flown:
 
     def at_wall(self, at: Array, times: Array, speeds: Array, wall: int) -> None:
         """Starts on a wall are launches of the impact map."""
-        where_two = None if self.osc.upper is None else wall
-        step = impact_map(self.osc, times[at], speeds[at], horizon=self.horizon, wall=where_two)
+        step = at_walls(partial(impact_map, horizon=self.horizon), self.osc, wall, (times[at], speeds[at]))
         self.wall[at] = 0 if step.wall is None else step.wall
         self.time[at], self.velocity[at], self.after[at] = step.flight_time, step.velocity, step.v
         self.status[at], self.cause[at] = step.status, step.cause

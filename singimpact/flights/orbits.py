@@ -17,7 +17,7 @@ from singimpact.flights.states import States, as_written
 from singimpact.flights.walls import at_walls, wall_codes
 from singimpact.inputs import require_memory
 from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.phase import reduced
+from singimpact.oscillator.period import reduced
 from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.result import Result, default_axes, in_words
 from singimpact.status import Status, Wall, status_array
@@ -82,8 +82,9 @@ def orbit_segment(
     if wall == Wall.upper:
         velocity, walls = -velocity, np.int8(1) - walls
         slopes = slopes * np.array([[1.0], [1.0], [-1.0], [-1.0]])
-    return Segment(tau + since, speed, time, velocity, acceleration, condition, error, slopes, ended, cause,
-                   code == PRESSED, walls)  # fmt: skip
+    return Segment(
+        tau + since, speed, time, velocity, acceleration, condition, error, slopes, ended, cause, code == PRESSED, walls
+    )
 
 
 @dataclass(frozen=True, repr=False)
@@ -155,8 +156,8 @@ def iterate(
         accurate = compiled_model(osc).iterate(times[left], speeds[left], 1)
         times[left], speeds[left], codes[left], sides[left] = accurate
     codes = np.where(codes == AT_REST, np.int8(Status.sticks), codes)
-    for each, model_there in enumerate(model.walls):
-        at = np.flatnonzero(sides == each)
+    for side, model_there in enumerate(model.walls):
+        at = np.flatnonzero(sides == side)
         over = at[_completed(model_there, times[at], speeds[at], codes[at])]
         codes[over], speeds[over] = Status.complete, 0.0
     parts = times + states.turns, speeds, decoded(codes)[0], sides.astype(np.int8)
@@ -197,7 +198,7 @@ def _completed(osc: Oscillator, tau: Array, v: Array, codes: Array) -> Array:
 
 
 def iterates(osc: Oscillator, tau: Any, v: Any, impacts: int, keep: bool, wall: Any = None) -> Ends:
-    """`iterate`, with the states after every impact along a first axis when they are kept."""
+    """`iterate`, with the states after every impact along a first axis when they are all_walls."""
     if osc.upper is not None and wall is None:
         wall = Wall.lower
     if not keep:
@@ -216,6 +217,6 @@ def iterates(osc: Oscillator, tau: Any, v: Any, impacts: int, keep: bool, wall: 
     times, speeds = (
         np.stack(column).reshape(shape) for column in zip(*((row.tau, row.v) for row in rows), strict=True)
     )
-    kept = None if walls is None else np.stack([row.wall for row in rows]).reshape(shape)
+    all_walls = None if walls is None else np.stack([row.wall for row in rows]).reshape(shape)
     turns = np.broadcast_to(states.turns, states.tau.shape).reshape(states.shape)
-    return Ends(times + turns, speeds, status_array(rows[-1].status.reshape(states.shape)), kept)
+    return Ends(times + turns, speeds, status_array(rows[-1].status.reshape(states.shape)), all_walls)

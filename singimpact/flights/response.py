@@ -24,7 +24,7 @@ from singimpact.flights.kernels.state import Columns, Rules, Work
 from singimpact.flights.limits import LIMITS, degree_for
 from singimpact.flights.model_numbers import constants_of, recurrence_of
 from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.phase import reduced
+from singimpact.oscillator.period import reduced
 from singimpact.oscillator.wall_acceleration import in_floats_of
 
 

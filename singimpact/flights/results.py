@@ -1,6 +1,8 @@
 """Results of flights: frozen dataclasses of arrays, or of scalars when the state was scalar."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass, field, fields
 from typing import Any, ClassVar, Self
 
@@ -195,3 +197,48 @@ def _sentence(status: int, cause: int, note: str | None) -> str:
     if status != Status.unresolved or not cause:
         return Status(status).sentence
     return Cause(cause).sentence if note is None else f"{note}; {Cause(cause).sentence}"
+
+
+@dataclass
+class Count:
+    """Flights computed since counting began."""
+
+    flights: int = 0
+
+
+_OPEN: ContextVar[tuple[Count, ...]] = ContextVar("open counts", default=())
+
+
+@contextmanager
+def counted() -> Iterator[Count]:
+    """Counts the flights of a block; blocks may stand inside one another.
+
+    Examples
+    --------
+    >>> from singimpact.flights.impact_map import impact_map
+    >>> from singimpact.oscillator.model import Oscillator
+    >>> with counted() as count:
+    ...     _ = impact_map(Oscillator("0", "-2", 0, 1), [0, 1], 1)
+    >>> count.flights
+    2
+    """
+    count = Count()
+    token = _OPEN.set((*_OPEN.get(), count))
+    try:
+        yield count
+    finally:
+        _OPEN.reset(token)
+
+
+def count_flights(flights: int) -> None:
+    """Flights that were computed just now.
+
+    Examples
+    --------
+    >>> with counted() as count:
+    ...     count_flights(3)
+    >>> count.flights
+    3
+    """
+    for count in _OPEN.get():
+        count.flights += flights

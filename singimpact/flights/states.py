@@ -13,6 +13,7 @@ import numpy as np
 
 from singimpact.algebra.expressions import Expression, Number
 from singimpact.algebra.numbers import (
+    Array,
     as_float,
     as_fraction,
     constant,
@@ -25,7 +26,7 @@ from singimpact.flights.blocks import LEAST
 from singimpact.flights.limits import LIMITS
 from singimpact.inputs import InputError, refuse, require_memory
 from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.phase import phase_of
+from singimpact.oscillator.period import phase_of
 from singimpact.oscillator.wall_acceleration import Zero, acceleration, sign_of_acceleration, zero_beside
 
 FAR = 2.0**25
@@ -53,8 +54,8 @@ class States:
     ((2,), '0.5*pi')
     """
 
-    tau: np.ndarray[Any, Any]
-    v: np.ndarray[Any, Any]
+    tau: Array
+    v: Array
     shape: tuple[int, ...]
     written: tuple[Any, Any]
     rest: Mapping[int, Zero] = field(default_factory=dict)
@@ -124,14 +125,14 @@ class States:
                 turns[index] = float(exact - Fraction(float(tau[index])))
         return replace(self, tau=tau, turns=turns) if turns.any() else self
 
-    def below_doubles(self) -> np.ndarray[Any, Any]:
+    def below_doubles(self) -> Array:
         """The rounding error of each launch time as a double."""
         low = np.zeros(self.tau.size)
         for index in self._rough().tolist():
             low[index] = float(self._exactly(index) - Fraction(float(self.tau[index])))
         return low
 
-    def _rough(self) -> np.ndarray[Any, Any]:
+    def _rough(self) -> Array:
         """Launches whose time is not given as a double, nor as an integer that is one."""
         times = self.written[0]
         if times.dtype.kind == "f":
@@ -148,9 +149,7 @@ class States:
 
     def exact_tau(self, index: int) -> Expression:
         """tau as it was written, or the zero of a_c that it stands for."""
-        if index in self.rest:
-            return self.rest[index].tau
-        return constant("tau", self.written[0][index])
+        return self.rest[index].tau if index in self.rest else constant("tau", self.written[0][index])
 
     def given(self, index: int) -> tuple[Any, Any]:
         """tau and v as they came."""
@@ -195,7 +194,7 @@ def _doubles(values: Any) -> bool:
     return type(values) is np.ndarray and values.dtype == np.float64
 
 
-def _clear(osc: Oscillator, states: States, resting: np.ndarray[Any, Any]) -> dict[int, Zero]:
+def _clear(osc: Oscillator, states: States, resting: Array) -> dict[int, Zero]:
     """Of doubles at rest those where a_c changes by less than half within 8 ulps: no zero is near, its sign decides."""
     times, speeds = states.written
     if times.dtype != float or speeds.dtype.kind not in "fiu":
@@ -215,7 +214,7 @@ def _zero_beside(osc: Oscillator, written: Any, digits: int | None) -> Zero | No
     return zero_beside(osc, float(written), 256 + 4 * (digits if isinstance(digits, int) else 15))
 
 
-def as_written(name: str, value: Any) -> np.ndarray[Any, Any]:
+def as_written(name: str, value: Any) -> Array:
     require_unmasked(name, value)
     if isinstance(value, Expression):
         boxed = np.empty((), dtype=object)

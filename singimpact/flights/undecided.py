@@ -20,15 +20,14 @@ from singimpact.flights.flight_path import path
 from singimpact.flights.kernels.hits import CANCELS, NOT_REFINED
 from singimpact.flights.kernels.state import ACROSS
 from singimpact.flights.limits import LIMITS
-from singimpact.flights.no_return.averaged import stays_up
-from singimpact.flights.no_return.barrier import kept_up
+from singimpact.flights.no_return.barrier import kept_up, stays_up
 from singimpact.flights.no_return.polynomial import never_returns, never_turns
 from singimpact.flights.response import response, usual_errors
 from singimpact.flights.results import JUDGED, Flight
 from singimpact.flights.states import States
 from singimpact.oscillator.linear import at_rest, linear_form
 from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.phase import reduced
+from singimpact.oscillator.period import reduced
 from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.status import Cause, Status
 
@@ -244,14 +243,14 @@ def escapes(osc: Oscillator, model: CompiledModel, states: States, fates: Fates)
     singular = (fates.cause == Cause.domain_left) & (numbers[:, 3] > 0)
     gone = np.flatnonzero(((fates.status == Status.no_return) | (fates.lost & ~singular)) & (numbers[:, 0] > 0))
     if gone.size:
-        time, speed, position, _ = numbers[gone].T
+        tau, (time, speed, position, _) = states.tau[gone], numbers[gone].T
         proved = np.ones(gone.size, dtype=bool)
-        for wall, each in enumerate(model.walls):
+        for wall, model_there in enumerate(model.walls):
             height, u = (position, speed) if not wall else (gap_of(osc)[0] - position, -speed)
             proved &= (
-                never_turns(each, height, u)
+                never_turns(model_there, height, u)
                 if model.form is None
-                else never_returns(each, linear_form(each) or model.form, states.tau[gone], time, height, u)
+                else never_returns(model_there, linear_form(model_there) or model.form, tau, time, height, u)
             )
         fates.status[gone[proved]], fates.cause[gone[proved]] = Status.escaped, Cause.decided
 
@@ -377,18 +376,18 @@ def refined_hit(osc: Oscillator, start: tuple[Expression, ...], time: float, vel
     """
     balls = Balls(LIMITS.refine_bits)
     system = _system(osc, balls.bits)
-    place = constant("height", 0) if osc.upper is None or velocity < 0 else subtract(osc.upper, osc.clearance)
+    level = constant("height", 0) if osc.upper is None or velocity < 0 else subtract(osc.upper, osc.clearance)
     with balls_at(balls.bits):
         launch = tuple(evaluate(tree, {}, balls) for tree in start)
         try:
-            hit = _halley(system, launch, balls.rational(Fraction(time)), evaluate(place, {}, balls))
+            hit = _halley(system, launch, balls.rational(Fraction(time)), evaluate(level, {}, balls))
         except (ArithmeticError, ValueError, TypeError):  # a ball that left the domain of log or a root
             return None
         return None if hit is None else [float(ball.mid()) for ball in hit]
 
 
-def _halley(system: LinearSystem, launch: tuple[Any, ...], time: Any, place: Any) -> tuple[Any, Any] | None:
-    """Time and velocity next to a time at which x - c = place, one step of Halley's method away; None when no step is
+def _halley(system: LinearSystem, launch: tuple[Any, ...], time: Any, level: Any) -> tuple[Any, Any] | None:
+    """Time and velocity next to a time at which x - c = level, one step of Halley's method away; None when no step is
     small.
     """
     import flint
@@ -398,7 +397,7 @@ def _halley(system: LinearSystem, launch: tuple[Any, ...], time: Any, place: Any
     start = flint.arb_mat([[at_first], [v], [1], *([value] for sine, cosine in angles for value in (cosine, sine))])
     for _ in range(STEPS):
         state = (system.matrix * time).exp() * start
-        height, speed = state[0, 0] - place, state[1, 0]
+        height, speed = state[0, 0] - level, state[1, 0]
         change = system.matrix * state
         curve, jerk = change[1, 0], (system.matrix * change)[1, 0]
         if not abs(height) < abs(speed * time) * NEAR.numerator / NEAR.denominator:

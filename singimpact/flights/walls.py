@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -29,8 +30,8 @@ def wall_codes(osc: Oscillator, wall: Any) -> Array:
     """
     if wall is None:
         return np.zeros((), np.int8)
-    given = np.asarray(wall, dtype=None if isinstance(wall, np.ndarray) else object)
-    codes = np.array([NAMES.get(name, -1) for name in given.ravel().tolist()], np.int8).reshape(given.shape)
+    names = np.asarray(wall, dtype=None if isinstance(wall, np.ndarray) else object)
+    codes = np.array([NAMES.get(name, -1) for name in names.ravel().tolist()], np.int8).reshape(names.shape)
     if codes.size and (codes.min() < 0 or (osc.upper is None and codes.any())):
         accepted = (
             "'lower' or 'upper', or an array of them" if osc.upper is not None else "'lower': the model has one wall"
@@ -67,10 +68,20 @@ def at_walls(
         raise InputError(
             f"wall of shape {codes.shape} does not broadcast with the states: give shapes that do"
         ) from None
-    chosen = [np.flatnonzero(codes.ravel() == each) for each in Wall]
-    parts = [fly(model, *(column.ravel()[at] for column in states))
-             for model, at in zip((osc, osc.mirrored), chosen, strict=True)]  # fmt: skip
+    chosen = [np.flatnonzero(codes.ravel() == side) for side in Wall]
+    parts = [
+        fly(model, *(column.ravel()[at] for column in states))
+        for model, at in zip((osc, osc.mirrored), chosen, strict=True)
+    ]
     return _together([parts[0], turned(parts[1])], chosen, codes.shape)
+
+
+def shared_out(fly: Callable[..., Any], osc: Oscillator, wall: Any, states: tuple[Any, ...], options: Any) -> Any:
+    """`at_walls` of a method of tau and v, which may be given by their names, and of options."""
+    columns = (*states, *(options.pop(name) for name in ("tau", "v")[len(states) :]))
+    if wall is None:
+        return fly(osc, *columns, **options)
+    return at_walls(partial(fly, **options), osc, wall, columns, options.get("out"))
 
 
 def turned(result: Any, out: Mapping[str, Array] | None = None) -> Any:
@@ -101,11 +112,11 @@ def _together(parts: list[Any], chosen: list[Array], shape: tuple[int, ...]) -> 
         return whole.reshape(shape + first.shape[1:])
 
     names = [name for name, value in vars(parts[0]).items() if isinstance(value, np.ndarray)]
-    fields = {name: joined([getattr(part, name) for part in parts]) for name in names}
+    fields = {name: joined([getattr(record, name) for record in parts]) for name in names}
     fields["status"] = status_array(fields["status"])
     if not isinstance(parts[0], Flight):
         return type(parts[0])(**fields)
-    notes = {int(at[k]): note for at, part in zip(chosen, parts, strict=True) for k, note in part.notes.items()}
+    notes = {int(at[k]): note for at, record in zip(chosen, parts, strict=True) for k, note in record.notes.items()}
     return type(parts[0]).made(
-        lambda name: {name: joined([getattr(part, name) for part in parts])}, **fields, notes=notes
+        lambda name: {name: joined([getattr(record, name) for record in parts])}, **fields, notes=notes
     )

@@ -143,9 +143,7 @@ def _wave(tree: Call, factor: Expression) -> tuple[Expression, list[Harmonic]] |
     return zero, [Harmonic(rate, phase, *((factor, zero) if tree.function == "cos" else (zero, factor)))]
 
 
-def _summed(
-    parts: list[tuple[Expression, list[Harmonic]] | None],
-) -> tuple[Expression, list[Harmonic]] | None:
+def _summed(parts: list[tuple[Expression, list[Harmonic]] | None]) -> tuple[Expression, list[Harmonic]] | None:
     found = [part for part in parts if part is not None]
     if len(found) < len(parts):
         return None

@@ -8,16 +8,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Self
 
-from singimpact.algebra.expressions import (
-    FUNCTIONS,
-    Call,
-    Expression,
-    Name,
-    names_in,
-    negate,
-    substitute,
-    walk,
-)
+from singimpact.algebra.expressions import FUNCTIONS, Call, Expression, Name, names_in, negate, substitute, walk
 from singimpact.algebra.numbers import compare, constant, tree_of
 from singimpact.algebra.puiseux import Puiseux
 from singimpact.algebra.rings import to_sympy
@@ -107,23 +98,23 @@ class Oscillator:
     def _above(
         self, upper: Any, restitution: Any, parameters: Mapping[str, Expression]
     ) -> tuple[Expression | None, Expression]:
-        """The place of the upper wall, None without one, and its restitution."""
+        """The height of the upper wall, None without one, and its restitution."""
         if upper is None:
             if restitution is not None:
-                raise refuse("upper_restitution", restitution, "upper= too, the place of the wall that it is of")
+                raise refuse("upper_restitution", restitution, "upper= too, the height of the wall that it is of")
             return None, self.restitution
-        place = constant("upper", upper)
-        if compare(place, self.clearance) <= 0:
+        height = constant("upper", upper)
+        if compare(height, self.clearance) <= 0:
             raise refuse("upper", upper, f"a number above the clearance {self.clearance}")
         law = (
             self.restitution
             if restitution is None
             else rebound.read(restitution, dict(parameters), "upper_restitution")
         )
-        for name, each in (("restitution", self.restitution), ("upper_restitution", law)):
-            if str(each) == "0":
+        for name, tree in (("restitution", self.restitution), ("upper_restitution", law)):
+            if str(tree) == "0":
                 raise refuse(name, 0, "a number above 0 beside upper=: two walls need rebounds")
-        return place, law
+        return height, law
 
     def __setattr__(self, name: str, value: Any) -> None:
         if hasattr(self, "_texts"):  # the last field that is set

@@ -16,13 +16,13 @@ import numpy as np
 from singimpact.algebra.balls import Balls, as_rational
 from singimpact.algebra.expressions import Expression, Number, evaluate, names_in, number, substitute, subtract
 from singimpact.algebra.jets import JetSpace
-from singimpact.algebra.numbers import as_float
+from singimpact.algebra.numbers import Array, as_float
 from singimpact.algebra.precision import balls_at
 from singimpact.algebra.rings import DOUBLES
 from singimpact.algebra.taylor import NotSmooth
 from singimpact.codegen.scalar import in_floats
 from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.phase import reduced
+from singimpact.oscillator.period import reduced
 
 CANCELLATION = 1 / 32
 """Below this part of |g| + |f| the difference g - f has lost five bits and is computed again with balls."""
@@ -54,7 +54,7 @@ def at_wall(osc: Oscillator) -> AtWall:
     return AtWall(subtract(forcing, force), number(0)) if "t" in names_in(force) else AtWall(forcing, force)
 
 
-def acceleration(osc: Oscillator, tau: np.ndarray[Any, Any], order: int = 0) -> np.ndarray[Any, Any]:
+def acceleration(osc: Oscillator, tau: Array, order: int = 0) -> Array:
     """a_c or a tau-derivative of it at doubles, each to a few units in the last place.
 
     Parameters
@@ -105,7 +105,7 @@ def in_floats_of(osc: Oscillator) -> tuple[Callable[[float], float], Callable[[f
     return in_floats(_moving_part(osc)[0], "t"), in_floats(force, "xdot", "t")
 
 
-def _near(osc: Oscillator, tau: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+def _near(osc: Oscillator, tau: Array) -> Array:
     """Times of which doubles lose the phase, reduced by the period, if there is one; the others as they are."""
     far = np.abs(tau) > NEAR
     return np.where(far, reduced(tau, osc.period), tau) if osc.period is not None and far.any() else tau
@@ -137,7 +137,7 @@ def largest_push(osc: Oscillator) -> float:
     return float(np.abs(acceleration(osc, np.linspace(0, as_float(osc.period), 64))).max())
 
 
-def _forcing(osc: Oscillator, tau: np.ndarray[Any, Any], order: int) -> np.ndarray[Any, Any]:
+def _forcing(osc: Oscillator, tau: Array, order: int) -> Array:
     forcing, steady = _moving_part(osc)
     if order or steady is not None:
         return np.full(tau.shape, 0.0 if order or steady is None else steady)

@@ -31,6 +31,7 @@ from singimpact.scenes.style import (
 )
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 HEIGHTS = {"v": "velocity $v$ after an impact", "phase": "phase of an impact, in periods", "x": "lowest $x - c$"}
@@ -55,7 +56,7 @@ class BranchPictureSettings:
 SETTINGS = BranchPictureSettings()
 
 
-def draw_branches(branches: Sequence[Branch], axes: Any, height: str = "v") -> Any:
+def draw_branches(branches: Sequence[Branch], axes: Axes, height: str = "v") -> Axes:
     """Draw branches over the number that is varied, with their events.
 
     Parameters
@@ -138,7 +139,7 @@ class _Drawn:
         turned = [np.roll(place, shift) for shift in range(len(place))]
         return min(turned, key=lambda each: float(np.nansum(np.abs(each - near))))
 
-    def lines(self, axes: Any) -> None:
+    def lines(self, axes: Axes) -> None:
         """One line for each impact and each stretch of one class."""
         color = orbit_color(self.branch.n, self.branch.k)
         # the class of a step between points is that of its end that is not an event; of two events that of what follows
@@ -184,7 +185,7 @@ def _torn(numbers: Array, heights: Array) -> tuple[Array, Array]:
     return np.insert(numbers, jumps, np.nan), np.insert(heights, jumps, np.nan)
 
 
-def _limits(axes: Any, drawn: list[_Drawn], shown: str) -> None:
+def _limits(axes: Axes, drawn: list[_Drawn], shown: str) -> None:
     """The picture is filled by the motions that occur; virtual parts are shown next to them."""
     numbers = np.concatenate([line.number for line in drawn])
     pad = SETTINGS.space / 2 * (np.ptp(numbers) or 1.0)
@@ -204,7 +205,7 @@ def _limits(axes: Any, drawn: list[_Drawn], shown: str) -> None:
     axes.set_ylim(low - SETTINGS.space * size, high + SETTINGS.space * size)
 
 
-def _draw_marks(axes: Any, marks: list[Any]) -> set[str]:
+def _draw_marks(axes: Axes, marks: list[Any]) -> set[str]:
     """Markers with their names, if all of these have clear places and are few; otherwise the names for the legend."""
     for (number, height, kind), _ in marks:
         axes.plot(number, height, kind_of(kind).marker, **OPEN, markersize=SETTINGS.mark, zorder=6, gid=kind)
@@ -219,7 +220,7 @@ def _draw_marks(axes: Any, marks: list[Any]) -> set[str]:
     return {text.get_text() for text in written}
 
 
-def _legend(axes: Any, drawn: list[_Drawn], kinds: list[str], names: set[str]) -> Any:
+def _legend(axes: Axes, drawn: list[_Drawn], kinds: list[str], names: set[str]) -> Axes:
     """Colours of orbits, then line styles, then markers that are not named in the picture."""
     from matplotlib.lines import Line2D
 
@@ -235,7 +236,7 @@ def _legend(axes: Any, drawn: list[_Drawn], kinds: list[str], names: set[str]) -
     return legend_below(axes, entries, min(4, len(entries)))
 
 
-def draw_event_curves(curves: Sequence[EventCurve], axes: Any) -> Any:
+def draw_event_curves(curves: Sequence[EventCurve], axes: Axes) -> Axes:
     """Draw curves of events in the plane of their two numbers, with points of codimension two."""
     planes = sorted({curve.over for curve in curves})
     if len(planes) > 1:
@@ -269,7 +270,7 @@ def draw_event_curves(curves: Sequence[EventCurve], axes: Any) -> Any:
     return legend_below(axes, entries, min(4, len(entries)))
 
 
-def _apart(points: list[tuple[float, float, str]], axes: Any) -> list[tuple[float, float, str]]:
+def _apart(points: list[tuple[float, float, str]], axes: Axes) -> list[tuple[float, float, str]]:
     """Points each once: curves that leave one another at a point all name it."""
     width, high = np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim())
     kept: list[tuple[float, float, str]] = []
@@ -334,7 +335,13 @@ def draw_bifurcation(diagram: Bifurcation, axes: Any, height: str = "v") -> Any:
     resting = ended == 1.0
     inches = float(np.prod(axes.figure.get_size_inches()))
     size = float(np.clip(np.sqrt(SPREAD * inches / max(values.size, 1)) / 20, 0.9, 3.0))
-    dots = {"marker": "o", "linestyle": "none", "markersize": size, "markeredgewidth": 0, "rasterized": True}
+    dots: dict[str, Any] = {
+        "marker": "o",
+        "linestyle": "none",
+        "markersize": size,
+        "markeredgewidth": 0,
+        "rasterized": True,
+    }
     axes.plot(values[~resting], places[~resting], color=BLACK, label="impact", **dots)
     if diagram.direction == "both":
         down = (np.arange(values.size) >= values.size // 2) & ~resting

@@ -1,14 +1,19 @@
 """Places for the names of points, clear of curves and of one another, and legends below the axes."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from singimpact.algebra.numbers import Array
 from singimpact.scenes.style import BLACK, GREY, OPEN
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
 @dataclass(frozen=True)
@@ -102,7 +107,7 @@ def place_labels(axes: Any, labels: Sequence[tuple[float, float, str]], size: fl
     return Names(written, clear)
 
 
-def legend_entries(axes: Any) -> dict[str, Any]:
+def legend_entries(axes: Axes) -> dict[str, Any]:
     """The words and handles of the legend that is there, or of the curves."""
     old = axes.get_legend()
     if old is None:
@@ -118,7 +123,7 @@ def legend_mark(shape: str, size: float, **look: Any) -> Any:
     return Line2D([], [], linestyle="none", marker=shape, markersize=size, **(OPEN | look))
 
 
-def legend_below(axes: Any, entries: dict[str, Any], columns: int = 3, under: float = 0.13) -> Any:
+def legend_below(axes: Axes, entries: dict[str, Any], columns: int = 3, under: float = 0.13) -> Axes:
     """The axes with a legend below them, where no curve is; `under` is its distance in heights of the axes."""
     axes.legend(
         entries.values(),
@@ -184,7 +189,7 @@ def _between(point: Array, direction: Array, ends: tuple[float, float], obstacle
     return int(((along > ends[0]) & (along < ends[1]) & (np.abs(aside) < clear)).sum())
 
 
-def _curve_points(axes: Any, step: float) -> Array:
+def _curve_points(axes: Axes, step: float) -> Array:
     """Points of all curves and markers of axes in pixels, about `step` apart."""
     points = [np.empty((0, 2))]
     for line in axes.lines:

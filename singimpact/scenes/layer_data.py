@@ -15,7 +15,7 @@ import numpy as np
 from singimpact import cache
 from singimpact.dynamics.invariant_arcs import gammas_within, stable_manifold
 from singimpact.dynamics.orbit import orbit
-from singimpact.flights.flight_count import counted
+from singimpact.flights.results import counted
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.store import cache_folder

@@ -25,6 +25,7 @@ from singimpact.store import written
 from singimpact.studies import interval
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from PIL import Image
 
@@ -49,7 +50,7 @@ class OrbitStyle:
 STYLE = OrbitStyle()
 
 
-def draw_orbit(orbit: Orbit, axes: Any, since: float | None = None) -> Any:
+def draw_orbit(orbit: Orbit, axes: Axes, since: float | None = None) -> Axes:
     """Draw x(t) of an orbit on axes, or of its part from a time on."""
     clearance = as_float(orbit.oscillator.clearance)
     begin, end = float(orbit.tau[0]) if since is None else since, shown_end(orbit)
@@ -67,7 +68,7 @@ def draw_orbit(orbit: Orbit, axes: Any, since: float | None = None) -> Any:
     return axes
 
 
-def _walls(orbit: Orbit, axes: Any) -> None:
+def _walls(orbit: Orbit, axes: Axes) -> None:
     """Hatched areas behind the walls."""
     low, high = axes.get_ylim()
     behind = [(low, as_float(orbit.oscillator.clearance))]
@@ -77,7 +78,7 @@ def _walls(orbit: Orbit, axes: Any) -> None:
         axes.axhspan(begin, end, facecolor=WALL, hatch="////", edgecolor=HATCH, linewidth=0, zorder=0)
 
 
-def draw_periodic(orbit: PeriodicOrbit, axes: Any) -> Any:
+def draw_periodic(orbit: PeriodicOrbit, axes: Axes) -> Axes:
     """Draw x(t) of a periodic orbit from its first impact on, over its k periods."""
     if orbit.kind == "free" or not orbit.visible:
         raise refuse("orbit to plot", orbit, "a periodic orbit with impacts that is visible")
@@ -86,7 +87,7 @@ def draw_periodic(orbit: PeriodicOrbit, axes: Any) -> Any:
     return draw_orbit(flown(orbit.oscillator, orbit.tau[0], orbit.v[0], impacts, wall=wall), axes)
 
 
-def draw_section(section: Section, axes: Any) -> Any:
+def draw_section(section: Section, axes: Axes) -> Axes:
     """Draw the states of a section in the plane of x and x'."""
     size = 4.0 if section.t.size <= STYLE.many else 1.2
     axes.plot(section.x, section.xdot, "o", color=BLUE, markersize=size, markeredgewidth=0, rasterized=True)
@@ -94,7 +95,7 @@ def draw_section(section: Section, axes: Any) -> Any:
     return axes
 
 
-def draw_release_map(releases: ReleaseMap, axes: Any) -> Any:
+def draw_release_map(releases: ReleaseMap, axes: Axes) -> Axes:
     """Draw the map of release phases, its flat pieces in another colour, and the diagonal."""
     period = releases.period
     start, phase, flat = (np.ravel(column) for column in (releases.start, releases.phase, releases.flat))
@@ -133,7 +134,7 @@ def _curve(orbit: Orbit, ends: tuple[float, float]) -> tuple[Any, Any]:
     return (np.concatenate(times), np.concatenate(places)) if times else ([], [])
 
 
-def _marks(orbit: Orbit, axes: Any, begin: float) -> None:
+def _marks(orbit: Orbit, axes: Axes, begin: float) -> None:
     looks = {
         "impact": ("o", "impact", WHITE),
         "graze": ("^", "graze", WHITE),
@@ -161,7 +162,7 @@ def _marks(orbit: Orbit, axes: Any, begin: float) -> None:
         )
 
 
-def _rests(orbit: Orbit, axes: Any, heights: Any, ends: tuple[float, float], width: float) -> None:
+def _rests(orbit: Orbit, axes: Axes, heights: Any, ends: tuple[float, float], width: float) -> None:
     """Bars while the mass is at rest, at the height of the event before."""
     label: str | None = "at rest on the wall"
     for (kind, start, stop), height in zip(orbit.phases, heights.tolist(), strict=False):
@@ -215,7 +216,7 @@ def _since(orbit: Orbit) -> float:
     return first if wanted <= first else float(orbit.tau[np.searchsorted(orbit.tau, wanted, side="right") - 1])
 
 
-def _portrait(orbit: Orbit, axes: Any, since: float) -> None:
+def _portrait(orbit: Orbit, axes: Axes, since: float) -> None:
     """x and x' of the last part; impacts are dashed lines along the walls."""
     end = shown_end(orbit)
     for kind, start, stop in orbit.phases:
@@ -241,7 +242,7 @@ def _portrait(orbit: Orbit, axes: Any, since: float) -> None:
         axes.legend(loc="upper right", frameon=False, fontsize="small")
 
 
-def _velocities(orbit: Orbit, axes: Any, since: float | None) -> None:
+def _velocities(orbit: Orbit, axes: Axes, since: float | None) -> None:
     """The velocity after every impact over time, logarithmic: a chatter is a row of points that falls."""
     hits = orbit.kind == "impact"
     largest = float(orbit.v[hits].max()) if hits.any() else 1.0
@@ -275,7 +276,7 @@ def _first_chatter(orbit: Orbit) -> Array:
     return times if times.size > 3 and np.isfinite(end) else times[:0]
 
 
-def _hops(orbit: Orbit, axes: Any, times: Array) -> None:
+def _hops(orbit: Orbit, axes: Axes, times: Array) -> None:
     """The distance from the wall during a chatter, on logarithmic axes: its hops are about equally wide there."""
     left = np.geomspace(times[-1] - times[0], times[-1] - times[-2], SAMPLES)[1:-1]
     heights = np.abs(orbit.sample(times[-1] - left).x - orbit.places[orbit.tau == times[-1]][0])
@@ -393,7 +394,7 @@ def animate(orbit: Orbit, between: tuple[float, float] | None = None, frames: in
     heights = orbit.sample(times).x
     figure = Figure(figsize=(7.2, 3.2), dpi=80, layout="constrained")
     still, moving = figure.subplots(1, 2, sharey=True, width_ratios=(1, 4))
-    draw_orbit(orbit, moving, since=begin).get_legend().remove()
+    draw_orbit(orbit, moving, since=begin).legend().remove()
     moving.set(xlim=(begin, end), ylabel="")
     for line in moving.lines:
         line.set_clip_on(True)  # marks of impacts that are not among the pictures

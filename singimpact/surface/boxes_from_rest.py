@@ -15,6 +15,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
+from flint import arb
+
 from singimpact.algebra.analytic import Recorder
 from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.expressions import ZERO, Expression, Name, add, multiply, names_in, substitute, subtract
@@ -24,12 +26,9 @@ from singimpact.flights.enclosures.tube import Tube, ball, centre, narrowed, upp
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import CLEARANCE
 
-PIECES = 5
-"""Times at which a box may touch the wall are cut to this power of 2 of a step."""
-CUT = 0.4817
-"""Where a piece of a step is cut: off the middle, where no crossing is expected."""
-NEWTON = 4
-"""Steps of Newton's method for the time of an extremum, at most."""
+PIECES = 5  # times at which a box may touch the wall are cut to this power of 2 of a step
+CUT = 0.4817  # where a piece of a step is cut: off the middle, where no crossing is expected
+NEWTON = 4  # steps of Newton's method for the time of an extremum, at most
 
 
 class Lean(NamedTuple):
@@ -172,8 +171,6 @@ class FlightFromRest(CarriedMotion):
 
     def _crossed(self, value: Tube, slope: Tube, length: Any, near: _NearLaunch) -> Iterator[tuple[Any, bool]]:
         """Pieces of a step on which x - c may vanish, and whether it is shown to do so once."""
-        from flint import arb
-
         stack, least = [(arb(0), arb(length))], length * arb(2) ** (-2 * PIECES)
         while stack:
             a, b = stack.pop()
@@ -197,8 +194,6 @@ class FlightFromRest(CarriedMotion):
                 yield (narrowed(piece, value, slope) if alone else piece), alone
 
     def _undecided(self, value: Tube, slope: Tube, length: Any, near: _NearLaunch) -> Iterator[Any]:
-        from flint import arb
-
         stack, least = [(arb(0), arb(length))], length * arb(2) ** -PIECES
         while stack:
             a, b = stack.pop()

@@ -12,8 +12,7 @@ import numpy as np
 from singimpact.algebra.numbers import Array, as_float, constant
 from singimpact.inputs import refuse
 
-SURFACE, STATES = ("tau", "t"), ("tau", "v")
-"""The axes of the two planes: launches with flight times, and launches."""
+SURFACE, STATES = ("tau", "t"), ("tau", "v")  # the axes of the two planes: launches with flight times, and launches
 
 
 def window_ends(name: str, window: Any) -> tuple[float, float]:

@@ -52,8 +52,8 @@ class TransitionSettings:
 SETTINGS = TransitionSettings()
 
 
+# What is looked for; "tangency" are lips, beaks and flights from tangency to tangency.
 KINDS = ("swan", "swallowtail", "tangency", "tacnode", "triple point", "periodic graze")
-"""What is looked for; "tangency" are lips, beaks and flights from tangency to tangency."""
 
 
 class Transitions(Results, tuple[Transition, ...]):

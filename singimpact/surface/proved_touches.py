@@ -32,8 +32,7 @@ from singimpact.progress import ProgressLine
 from singimpact.surface.boxes_from_rest import FlightFromRest, Tangencies, at_time
 from singimpact.surface.swan_families import MARGIN, STEPS, Family, Transition
 
-NEAR = 1e-8
-"""Relative distance below which an isolated zero is the transition of the list."""
+NEAR = 1e-8  # relative distance below which an isolated zero is the transition of the list
 SEARCH = replace(BOXES, bits=96, most=60_000, least=Fraction(1, 2**18))
 
 
@@ -67,8 +66,8 @@ class TouchSettings:
 
 
 SETTINGS = TouchSettings()
+# The search for zeros in a box that is cut here, with its flights, and not there.
 ONE_BOX = replace(BOXES, bits=SETTINGS.fine + 24, most=1)
-"""The search for zeros in a box that is cut here, with its flights, and not there."""
 
 
 @dataclass(frozen=True)
@@ -285,11 +284,7 @@ class RestFlight:
     def touches(self, period: float, ends: tuple[float, float], times: tuple[float, float]) -> IsolatedZeros:
         """(tau, t, value) of all lips and beaks in a period of tau."""
         longest = Fraction(period)
-        window = (
-            (-longest / MARGIN, longest * Fraction(MARGIN + 1, MARGIN)),
-            _ends(times),
-            _ends(ends),
-        )
+        window = ((-longest / MARGIN, longest * Fraction(MARGIN + 1, MARGIN)), _ends(times), _ends(ends))
         names = ("tau", "t", self.over)
         excluded = _no_other_than_at_zero(self.heights[3:], names)
         return isolated_zeros((self.push, *self.heights[:2]), names, window, excluded=excluded, settings=SEARCH)

@@ -214,6 +214,7 @@ class SightSettings:
 
 
 SIGHT = SightSettings()
+# What a visible transition does in one direction of the number; in the other one it is undone.
 WORDS = {
     "swan, negative": "an arc delta of discontinuities is born, with gamma at its foot and the loops round its tip",
     "swan, positive": "the arcs delta of two neighbours join: one ends on the other in a T-junction",
@@ -247,7 +248,6 @@ WORDS = {
         "the motion without impact meets the wall: arcs delta accumulate on it, and cuts of gamma and of its loops too"
     ),
 }
-"""What a visible transition does in one direction of the number; in the other one it is undone."""
 HIDDEN = "no first hit changes: the flight meets the wall from below, or passes through it between its rests"
 UNDECIDED = "the flight touches the wall once more, so that it is not decided whether first hits change"
 

@@ -14,8 +14,8 @@ from singimpact.algebra.numbers import Array
 from singimpact.inputs import Unfinished
 from singimpact.surface.curve import Window
 
+# Points -> y, its gradient, a further column, and the gradient of that.
 Gradient = Callable[[Array], tuple[Array, Array, Array, Array]]
-"""Points -> y, its gradient, a further column, and the gradient of that."""
 Grid = Callable[[Array, Array], Array]
 
 

@@ -18,38 +18,31 @@ from math import comb
 from typing import Any
 
 from singimpact.algebra.interpolation import RationalCoefficients, in_lowest_terms
-from singimpact.algebra.jets import Jet, JetSpace
+from singimpact.algebra.jets import Jet
 from singimpact.algebra.polynomials import Exponents
 from singimpact.contact.contact import Contact, derivative_name
+from singimpact.handed_on import flint
 from singimpact.theory.gamma_in_symbols import in_length, length_weight, rho_names
 from singimpact.theory.impact_sheet import Sheet, sheet
-
-
-def foliation(
-    contact: Contact, restitution: Any, inverse_gap: Callable[[int], Any], order: int, rho: Mapping[int, Any]
-) -> Jet:
-    """K(sigma, v) to total degree `order`, a jet in (sigma, v).
-
-    Parameters
-    ----------
-    contact : at contact order 0; a_0 must have an inverse in its ring.
-    restitution : r. inverse_gap : n -> 1/(1 - r^n). rho : k -> coefficient of v^k in rho, k >= 2.
-
-    Examples
-    --------
-    >>> from singimpact.algebra.rings import EXACT
-    >>> bouncing = Contact(0, EXACT, {0: Fraction(-2)}, {})
-    >>> print(foliation(bouncing, Fraction(1, 2), lambda n: 1 / (1 - Fraction(1, 2)**n), 3, {}))
-    sigma + (2)*v
-    """
-    series = leaves(sheet(contact, order), restitution, inverse_gap, rho)
-    return JetSpace(("sigma", "v"), order, contact.ring).jet(series)
 
 
 def leaves(
     sheet_: Sheet, restitution: Any, inverse_gap: Callable[[int], Any], rho: Mapping[int, Any]
 ) -> dict[Exponents, Any]:
-    """The coefficients of K from the sheet: (i, n) -> that of sigma^i v^n."""
+    """The coefficients of K to the order of a sheet at contact order 0: (i, n) -> that of sigma^i v^n.
+
+    Parameters
+    ----------
+    sheet_ : over a ring in which a_0 has an inverse.
+    restitution : r. inverse_gap : n -> 1/(1 - r^n). rho : k -> coefficient of v^k in rho, k >= 2.
+
+    Examples
+    --------
+    >>> from singimpact.algebra.rings import EXACT
+    >>> bouncing = sheet(Contact(0, EXACT, {0: Fraction(-2)}, {}), 2)
+    >>> leaves(bouncing, Fraction(1, 2), lambda n: 1 / (1 - Fraction(1, 2)**n), {})[(0, 1)]
+    Fraction(2, 1)
+    """
     contact, order, space = sheet_.contact, sheet_.order, sheet_.v.space
     one = space.rational(Fraction(1))
     sigma, t = space.generators()
@@ -148,7 +141,7 @@ def symbolic_completion(order: int) -> SymbolicCompletion:
         for n, coefficient in enumerate(
             numerators, 1
         ):  # Horner: what stands for c_n is divided by the gaps up to n alone
-            total = total * jets.gap(n) if n > 1 else total
+            total = total * (jets.one - jets.lambda_**n) if n > 1 else total
             total = total + coefficient.later(power) - coefficient.value * jets.launch[n][power]
         numerators.append(_Numerator(jets, power, total * (-2) ** power))  # v_c(0, t) = -t/2 + ... in units of a
     coefficients = {n: jets.over_gaps(numerator.value, n) for n, numerator in enumerate(numerators, 1)}
@@ -169,18 +162,14 @@ class _LaunchJets:
         self.ring, self.order = contact.ring, order
         self.names = self.ring.names[:-1]
         self.zero, self.one = (self.ring.rational(Fraction(n)) for n in (0, 1))
-        self.lambda_ = self.ring.symbol("lambda")
-        sheet_ = sheet(contact, order)
-        launch, impact = (self._in_t(jet) for jet in (sheet_.v, sheet_.xdot))
+        self.lambda_, sheet_ = self.ring.symbol("lambda"), sheet(contact, order)
+        starts = (jet.at("sigma", 0) for jet in (sheet_.v, sheet_.xdot))
+        launch, impact = ([start.coefficient((0, k)) for k in range(order + 1)] for start in starts)
         rebound, power = [-self.lambda_ * value for value in impact], impact
         for name in rho:
             power = self._product(power, impact)
             rebound = [x + self.ring.symbol(name) * y for x, y in zip(rebound, power, strict=True)]
         self.launch, self.rebound = self._powers_of(launch), self._powers_of(rebound)
-
-    def _in_t(self, jet: Jet) -> list[Any]:
-        start = jet.at("sigma", 0)
-        return [start.coefficient((0, k)) for k in range(self.order + 1)]
 
     def _product(self, left: list[Any], right: list[Any]) -> list[Any]:
         found = [self.zero] * (self.order + 1)
@@ -194,10 +183,6 @@ class _LaunchJets:
         for n in range(2, self.order + 1):
             found[n] = self._product(found[n - 1], line)
         return found
-
-    def gap(self, n: int) -> Any:
-        """1 - lambda^n."""
-        return self.one - self.lambda_**n
 
     def derivative(self, value: Any, power: int) -> Any:
         """By the phase of a coefficient of v^power that was written for a = 1."""
@@ -213,8 +198,6 @@ class _LaunchJets:
 
     def over_gaps(self, value: Any, power: int) -> RationalCoefficients:
         """A polynomial over (1 - lambda)(1 - lambda^2) ... (1 - lambda^power), by monomials of the jets."""
-        import flint
-
         numerators: dict[Exponents, list[Any]] = {}
         size = value.degrees()[-1] + 1
         for key, coefficient in value.to_dict().items():
@@ -241,10 +224,9 @@ class _Numerator:
 
     def later(self, power: int) -> Any:
         """The coefficient of t^power in c(tau + t) times the power of the rebound velocity."""
-        derivatives = self.derivatives
+        derivatives, total = self.derivatives, self.jets.zero
         if not derivatives:
             derivatives.append(self.value)
-        total = self.jets.zero
         for k in range(power - self.power + 1):
             if k == len(derivatives):
                 derivatives.append(self.jets.derivative(derivatives[-1], self.power) / k)

@@ -13,6 +13,7 @@ from singimpact.algebra.numbers import tree_of
 from singimpact.algebra.precision import kept_property
 from singimpact.algebra.rings import EXACT, SYMBOLIC, SymbolRing, to_sympy
 from singimpact.contact.contact import Contact, acceleration_jet, derivative_name, force_jet
+from singimpact.handed_on import sympy
 from singimpact.inputs import InputError, refuse, require_known
 from singimpact.oscillator.model import Oscillator, require_smooth_rho
 from singimpact.oscillator.rho_series import TASK
@@ -35,8 +36,6 @@ class ConstantRing(SymbolRing):
 
     def from_sympy(self, value: Any) -> Any:
         """A sympy polynomial in the constants as an element."""
-        import sympy
-
         total = self.rational(Fraction(0))
         for key, coefficient in sympy.Poly(value, *self.constants, domain="QQ").terms():
             term = self.rational(Fraction(int(coefficient.p), int(coefficient.q)))
@@ -66,8 +65,6 @@ def contact_in_sympy(
     a: Mapping[int, Any], f: Mapping[tuple[int, ...], Any], j: int, tau: Expression | None = None
 ) -> Contact:
     """Jets that are sympy expressions as polynomials in whatever they are made of; a_0..a_(j-1) are left out."""
-    import sympy
-
     values: dict[Any, Any] = {("a", k): sympy.expand(value) for k, value in a.items() if k >= j}
     values |= {pair: sympy.expand(value) for pair, value in f.items()}
     ring, convert = _ring_of(list(values.values()))
@@ -83,8 +80,6 @@ def contact_in_sympy(
 
 
 def _ring_of(values: list[Any]) -> tuple[Any, Any]:
-    import sympy
-
     moving = [value for value in values if not value.is_Rational]
     if not moving:
         return EXACT, lambda value: Fraction(int(value.p), int(value.q))
@@ -135,8 +130,6 @@ class LetteredModel:
 
     def acceleration(self, order: int) -> dict[int, Any]:
         """k -> a_c^(k)(tau_*)/k! for k = j..order."""
-        import sympy
-
         if self._tau is None:
             return {k: sympy.Symbol(derivative_name(k)) / factorial(k) for k in range(self.j, order + 1)}
         derivatives = [sympy.expand(c) for c in acceleration_jet(self.model, self._tau, order, SYMBOLIC, self.keep)]
@@ -166,8 +159,6 @@ class LetteredModel:
 
     def values(self, order: int) -> dict[Any, Any]:
         """Generic symbol (a_dk, f_ik, rho_n) -> what this model has there."""
-        import sympy
-
         jets_ = {}
         if self._tau is not None:
             jets = self.acceleration(order)
@@ -179,8 +170,6 @@ class LetteredModel:
         return jets_ | self._rho(order)
 
     def _rho(self, order: int) -> dict[Any, Any]:
-        import sympy
-
         require_smooth_rho(self.model, TASK)
         space = JetSpace(("v",), order, SYMBOLIC)
         letters = {name: space.constant(SYMBOLIC.symbol(name)) for name in self.keep}

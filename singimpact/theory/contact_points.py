@@ -1,5 +1,7 @@
 """A model at a contact point, in the best numbers there are: rationals, exact constants of sympy, or balls."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -14,6 +16,7 @@ from singimpact.algebra.univariate import precision_of
 from singimpact.contact.contact import NAMED_ORDERS, Contact, acceleration_jet
 from singimpact.contact.points import TangencyPoint, tangency_points
 from singimpact.contact.zero_ahead import ContactZero
+from singimpact.handed_on import flint
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.model import Oscillator, require_smooth_rho
 from singimpact.oscillator.rho_series import TASK, series_of_rho
@@ -93,8 +96,9 @@ def place(model: Any, j: int, tau: Any) -> Place:
         return Place(model, j, exact, None)
     near = [p for p in tangency_points(model) if abs(p.tau - as_float(exact)) <= NEAR * (1 + abs(p.tau))]
     if not near or (near[0].kind == "degenerate") != (j > 1):
-        value = acceleration_jet(model, as_float(exact), max(j - 1, 0), DOUBLES)
-        raise InputError(f"tau = {exact} is not of contact order {j}: a_c and its derivatives there are {_told(value)}")
+        jet = acceleration_jet(model, as_float(exact), max(j - 1, 0), DOUBLES)
+        values = ", ".join(f"{float(value):.3g}" for value in jet)
+        raise InputError(f"tau = {exact} is not of contact order {j}: a_c and its derivatives there are {values}")
     return Place(model, j, None, near[0])
 
 
@@ -111,8 +115,7 @@ def ending_gamma(where: Place) -> Place:
     >>> ending_gamma(place(model, 1, None)).j
     1
     """
-    j = where.j
-    balls = Balls(ZERO_BITS)
+    j, balls = where.j, Balls(ZERO_BITS)
     with precision_of(balls):
         lead = acceleration_jet(where.model, where.tau_in(balls), j, balls)[j]
     wanted = 1 if j % 2 else -1
@@ -146,10 +149,6 @@ def _is_place(model: Oscillator, j: int, tau: Any) -> bool:
     return True
 
 
-def _told(values: list[Any]) -> str:
-    return ", ".join(f"{float(value):.3g}" for value in values)
-
-
 def _first(model: Oscillator, j: int) -> TangencyPoint:
     if j not in KINDS:
         raise InputError(f"tau is needed at contact order {j}: give tau=")
@@ -167,8 +166,7 @@ def _vanishes(model: Oscillator, tau: Expression, j: int) -> bool:
     """Whether a_c and its first j - 1 derivatives are zero at an exact tau: in rationals, or to ZERO_BITS."""
     balls = Balls(ZERO_BITS)
     with precision_of(balls):
-        jet = acceleration_jet(model, tau, j - 1, balls)
-        return all(bool(value.contains(0)) for value in jet)
+        return all(bool(value.contains(0)) for value in acceleration_jet(model, tau, j - 1, balls))
 
 
 def exact_contact(where: Place, order: int) -> Contact | None:
@@ -209,13 +207,10 @@ def _equation(j: int) -> tuple[list[int], list[int]]:
 
 
 def _rational_multiplier(j: int, r: Fraction | None) -> Fraction | None:
-    import flint
-
     if r is None:
         return None
     above, below = _equation(j)
-    rate = flint.fmpq(r.numerator, r.denominator)
-    _, factors = (flint.fmpq_poly(above) - flint.fmpq_poly(below) * rate).factor()
+    _, factors = (flint.fmpq_poly(above) - flint.fmpq_poly(below) * flint.fmpq(r.numerator, r.denominator)).factor()
     for factor, _ in factors:
         if factor.degree() == 1:
             root = -factor[0] / factor[1]
@@ -224,10 +219,8 @@ def _rational_multiplier(j: int, r: Fraction | None) -> Fraction | None:
     return None
 
 
-def _multiplier_ball(j: int, r: Any, bits: int) -> Any:
+def _multiplier_ball(j: int, r: flint.arb, bits: int) -> flint.arb:
     """Halving to a short interval, then Newton's method on balls, which proves the root."""
-    import flint
-
     above, below = (flint.arb_poly(coefficients) for coefficients in _equation(j))
     poly = above - below * r
     slope = poly.derivative()

@@ -1,7 +1,8 @@
 """Certified digits: a computation in balls is done again with more bits until each result has its digits."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil
 from typing import Any
@@ -10,18 +11,11 @@ from singimpact.algebra.balls import Balls, as_rational
 from singimpact.algebra.certified import Certified, as_certified
 from singimpact.algebra.precision import Ladder, digits_at, for_user
 from singimpact.algebra.univariate import precision_of
+from singimpact.handed_on import flint, sympy
 from singimpact.inputs import InputError, refuse
 
-
-@dataclass(frozen=True)
-class DigitLimits:
-    """digits : the most that are given. bits : the most that are worked with, reached when a result cancels."""
-
-    digits: int = 2000
-    bits: int = 1 << 16
-
-
-LIMITS = DigitLimits()
+MOST_DIGITS = 2000  # that are given
+MOST_BITS = 1 << 16  # that are worked with, reached when a result cancels
 
 
 def with_digits(
@@ -36,40 +30,38 @@ def with_digits(
     ----------
     show : makes the result of what was computed and the digits. balls_in : its numbers.
     """
-    if isinstance(digits, bool) or not isinstance(digits, int) or not 1 <= digits <= LIMITS.digits:
-        raise refuse("digits", digits, f"an integer from 1 to {LIMITS.digits}")
-    for bits in Ladder(ceil(digits * 3.33) + 128, LIMITS.bits):
+    if isinstance(digits, bool) or not isinstance(digits, int) or not 1 <= digits <= MOST_DIGITS:
+        raise refuse("digits", digits, f"an integer from 1 to {MOST_DIGITS}")
+    for bits in Ladder(ceil(digits * 3.33) + 128, MOST_BITS):
         with precision_of(Balls(bits)):
             enclosure = compute(Balls(bits))
         if all(as_certified(ball, digits) is not None for ball in balls_in(enclosure)):
             return show(enclosure, digits)
-    raise InputError(f"{digits} digits are not reached with {LIMITS.bits} bits: ask for fewer, or a lower order")
+    raise InputError(f"{digits} digits are not reached with {MOST_BITS} bits: ask for fewer, or a lower order")
 
 
-def all_certified(found: Mapping[int, Any], digits: int) -> dict[int, Certified | None]:
+def all_certified(found: Mapping[int, flint.arb], digits: int) -> dict[int, Certified | None]:
     """Every ball of a series as a value with a radius."""
     return {n: as_certified(ball, digits) for n, ball in found.items()}
 
 
-def all_digits(found: Mapping[int, Any], digits: int) -> dict[int, Any]:
+def all_digits(found: Mapping[int, flint.arb], digits: int) -> dict[int, Any]:
     """Every ball of a series as an mpmath number."""
     return {n: as_digits(ball, digits) for n, ball in found.items()}
 
 
-def as_digits(ball: Any, digits: int) -> Any:
+def as_digits(ball: flint.arb, digits: int) -> Any:
     """A ball as an mpmath number with this many digits; zero when it holds zero, for then it is far below them."""
     with digits_at(digits + 3) as mp:
         value = Fraction(0) if ball.contains(0) else as_rational(ball)
         return for_user(mp.mpf(value.numerator) / value.denominator)
 
 
-def as_double(ball: Any) -> float:
+def as_double(ball: flint.arb) -> float:
     """A ball as a double; zero when it holds zero."""
     return 0.0 if ball.contains(0) else float(ball.mid())
 
 
-def sympy_digits(ball: Any, digits: int) -> Any:
+def sympy_digits(ball: flint.arb, digits: int) -> Any:
     """A ball as a sympy Float with this many digits."""
-    import sympy
-
     return sympy.Float(as_digits(ball, digits), digits)

@@ -33,8 +33,7 @@ class _Enclosures(Result):
 
     def arrays(self) -> dict[str, tuple[tuple[str, ...], Any]]:
         """A row for each name, with value and radius as text."""
-        values = self.as_dict()
-        rows = [{"name": name, **enclosure} for name, enclosure in values.items()]
+        rows = [{"name": name, **enclosure} for name, enclosure in self.as_dict().items()]
         return {name: (("row",), column) for name, column in columns_of(rows).items()}
 
 
@@ -179,8 +178,7 @@ def numerator_coefficients(j: int) -> tuple[int, ...]:
 def _fixed_polynomial(j: int, rate: Fraction) -> list[Fraction]:
     """lambda^(j+1) P_j - r Q_j, coefficients from the constant one."""
     p = numerator_coefficients(j)
-    low = [-rate * value for value in reversed(p)]
-    return low + [Fraction(value) for value in p]
+    return [*(-rate * value for value in reversed(p)), *map(Fraction, p)]
 
 
 def _shifted(coefficients: list[Fraction], by: Fraction) -> list[Fraction]:
@@ -195,9 +193,9 @@ def _shifted(coefficients: list[Fraction], by: Fraction) -> list[Fraction]:
 def _multipliers(j: int, rate: Fraction, balls: Balls) -> dict[str, Any]:
     """lambda, 1 - lambda, mu, mu - 1 at contact order j, each without cancellation."""
     polynomial = _fixed_polynomial(j, rate)
-    multiplier = _positive_root(polynomial, balls)
+    (multiplier,) = [root for root in real_roots(polynomial, balls) if root > 0]  # one change of sign
     flipped = [value * (-1) ** n for n, value in enumerate(_shifted(polynomial, Fraction(1)))]  # in u = 1 - lambda
-    gap = _least_positive(flipped, balls)
+    (gap,) = [root for root in real_roots(flipped, balls) if root > 0 and root < 1]
     p, q = numerator_coefficients(j), numerator_coefficients(j)[::-1]
     above, below = _value(p, multiplier, balls), _value(q, multiplier, balls)
     rest = _value(_quotient(j), multiplier, balls)
@@ -213,8 +211,7 @@ def _multipliers(j: int, rate: Fraction, balls: Balls) -> dict[str, Any]:
 def _quotient(j: int) -> tuple[int, ...]:
     """(P_j^2 - lambda Q_j^2)/(1 - lambda): all its coefficients are positive."""
     p, q = numerator_coefficients(j), numerator_coefficients(j)[::-1]
-    size = 2 * j + 2
-    difference = [0] * size
+    difference = [0] * (2 * j + 2)
     for i in range(j + 1):
         for n in range(j + 1):
             difference[i + n] += p[i] * p[n]
@@ -233,18 +230,6 @@ def _value(coefficients: tuple[int, ...], at: Any, balls: Balls) -> Any:
     for value in reversed(coefficients):
         total = total * at + value
     return total
-
-
-def _positive_root(coefficients: list[Fraction], balls: Balls) -> Any:
-    """The only positive root (one change of sign)."""
-    (root,) = [root for root in real_roots(coefficients, balls) if root > 0]
-    return root
-
-
-def _least_positive(coefficients: list[Fraction], balls: Balls) -> Any:
-    """The only root in (0, 1)."""
-    (root,) = [root for root in real_roots(coefficients, balls) if root > 0 and root < 1]
-    return root
 
 
 def _certified(enclosures: Any, digits: int) -> dict[str, Certified]:

@@ -6,7 +6,7 @@ For a model they are exact when tau_* and lambda are, else mpmath numbers whose 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import lru_cache
+from functools import lru_cache, partial
 from math import factorial
 from typing import Any
 
@@ -16,6 +16,7 @@ from singimpact.algebra.jets import Jet
 from singimpact.algebra.rings import DOUBLES, EXACT
 from singimpact.algebra.univariate import precision_of
 from singimpact.contact.contact import Contact, contact_order, derivative_name
+from singimpact.handed_on import sympy
 from singimpact.inputs import InputError, checked_keywords, refuse, whole
 from singimpact.oscillator.model import require_smooth_rho
 from singimpact.oscillator.rho_series import TASK
@@ -99,8 +100,7 @@ def v_c(
     where = place(model, j, tau)
     exact = exact_contact(where, order)
     if exact is not None:
-        sheet_ = sheet(exact, order)
-        return sheet_.v.to_sympy()
+        return sheet(exact, order).v.to_sympy()
     return with_digits(
         lambda ring: sheet(where.contact(order, ring), order).v,
         digits,
@@ -148,23 +148,18 @@ def v_c_on_arrays(
     >>> v([0.5, 0.0], 0.6).round(12).tolist()
     [0.306, 0.036]
     """
-    j = contact_order(at)
+    j, velocity = contact_order(at), "xdot" if impact else "v"
     order = whole("order", order, 1, LIMITS.sheet_numbers)
     where = place(model, j, tau)
     exact = exact_contact(where, order)
     if exact is not None and exact.ring is EXACT:
-        return Horner(_launch_or_impact(exact, order, impact).terms, compensated)
+        return Horner(getattr(sheet(exact, order), velocity).terms, compensated)
     return with_digits(  # type: ignore[no-any-return]
-        lambda ring: _launch_or_impact(where.contact(order, ring), order, impact),
+        lambda ring: getattr(sheet(where.contact(order, ring), order), velocity),
         TWO_DOUBLES,
         lambda jet, _: Horner({key: as_rational(ball) for key, ball in jet.terms.items()}, compensated),
         lambda jet: jet.terms.values(),
     )
-
-
-def _launch_or_impact(contact: Contact, order: int, impact: bool) -> Any:
-    made = sheet(contact, order)
-    return made.xdot if impact else made.v
 
 
 @checked_keywords
@@ -270,8 +265,7 @@ def chatter_limit(
 
 @lru_cache(maxsize=16)
 def _symbolic_chatter(order: int) -> Mapping[int, Any]:
-    found = symbolic_completion(order)
-    return {n: found.to_sympy(n) for n in range(1, order + 1)}
+    return {n: symbolic_completion(order).to_sympy(n) for n in range(1, order + 1)}
 
 
 def _completed(where: Place, order: int, ring: Any) -> dict[int, Any]:
@@ -312,11 +306,11 @@ def _curve_series(name: str, order: int, j: int, model: Any, tau: Any, digits: i
     rough = getattr(curve_at(where, top + TRUST.further, DOUBLES), name)
     further = {n: abs(float(value)) for n, value in rough.items() if n > order}
 
-    def numbers() -> Any:
-        return with_digits(lambda ring: getattr(curve_at(where, top, ring), name), digits, all_digits)
+    def coefficients(ring: Any) -> Any:
+        return getattr(curve_at(where, top, ring), name)
 
-    def enclosures(wanted: int) -> Any:
-        return with_digits(lambda ring: getattr(curve_at(where, top, ring), name), wanted, all_certified)
+    numbers = partial(with_digits, coefficients, digits, all_digits)
+    enclosures = partial(with_digits, coefficients, show=all_certified)
 
     exact = _exact_curve(where, top, name)
     if exact is not None:
@@ -408,8 +402,6 @@ def _through_symbols(
     contact: Contact, lambda_: Fraction, order: int, quantity: str, rho: Mapping[int, Any]
 ) -> dict[int, Any]:
     """The curve for symbols in units of a_j, then the constants put in: a polynomial a_j has no inverse."""
-    import sympy
-
     j, show = contact.order, contact.ring.to_sympy
     unit = Contact.generic(j, order, unit=True, more=rho_names(j, order))
     ring = unit.ring
@@ -427,6 +419,4 @@ def _through_symbols(
 
 
 def _shown(value: Any) -> Any:
-    import sympy
-
     return sympy.Rational(value.numerator, value.denominator)

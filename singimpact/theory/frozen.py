@@ -16,7 +16,7 @@ from singimpact.codegen.polynomial_source import (
     rational_series_source,
 )
 from singimpact.contact.contact import NAMED_ORDERS, Contact, derivative_name
-from singimpact.germs.germ_forms import normal_form
+from singimpact.germs import normal_form
 from singimpact.theory.completion import symbolic_completion
 from singimpact.theory.gamma_in_symbols import length_weight, symbolic_curve
 from singimpact.theory.impact_sheet import generic_sheet, sheet

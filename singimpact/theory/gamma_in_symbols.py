@@ -4,6 +4,8 @@ Lengths are first measured so that a_j = 1; that symbol is put back at the end, 
 The denominators are known beforehand: powers of the divisors that the solver meets, and of lambda.
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from fractions import Fraction
 from functools import lru_cache
@@ -14,10 +16,10 @@ from singimpact.algebra.interpolation import RationalCoefficients, interpolated
 from singimpact.algebra.precision import kept_property
 from singimpact.algebra.rings import sympy_rational
 from singimpact.contact.contact import Contact, derivative_name
+from singimpact.handed_on import flint, sympy
 from singimpact.theory.gamma_series import InvariantCurve, invariant_curve
 
-WHOLLY_FACTORED = 12
-"""Degree of a numerator up to which it is written as a product of irreducible factors."""
+WHOLLY_FACTORED = 12  # degree of a numerator up to which it is written as a product of irreducible factors
 ROOTS = (Fraction(0), Fraction(1), Fraction(-1), Fraction(-2), Fraction(-1, 2))
 
 
@@ -50,8 +52,7 @@ class SymbolicCurve:
         levels = range(self.order - self.j)
 
         def values_at(node: int) -> list[Any]:
-            coefficients = getattr(self._at(node), part)
-            return [coefficients[first + n].to_dict() for n in levels]
+            return [getattr(self._at(node), part)[first + n].to_dict() for n in levels]
 
         found = interpolated(values_at, [_denominator(self.j, level) for level in levels])
         return dict(enumerate(found, first))
@@ -68,8 +69,6 @@ class SymbolicCurve:
 
 def in_length(coefficient: RationalCoefficients, names: tuple[str, ...], j: int, of_length: int) -> Any:
     """A coefficient found with a_j = 1 as a sympy expression, for any a_j: it scales as a length to `of_length`."""
-    import sympy
-
     from singimpact.algebra.long_sums import Products
 
     products, unit = Products(), sympy.Symbol(derivative_name(j))
@@ -97,14 +96,12 @@ def length_weight(name: str) -> int:
     return int(digits) - 1 if head == "rho" else int(digits[0]) + int(digits[1]) - 1
 
 
-def factored(poly: Any, wholly: int = WHOLLY_FACTORED) -> tuple[Any, list[tuple[Any, int]]]:
+def factored(poly: flint.fmpq_poly, wholly: int = WHOLLY_FACTORED) -> tuple[Any, list[tuple[Any, int]]]:
     """An fmpq_poly in lambda as a rational and powers of its factors, in sympy.
 
     Above the degree `wholly` only factors of degree 1 that are often met are looked for: to show that the rest has none
     takes longer than all else, and it hardly ever has one.
     """
-    import sympy
-
     constant, factors = poly.factor() if poly.degree() <= wholly else _split_by_roots(poly)
     single = len(factors) == 1 and factors[0][1] == 1
     if single and any(factors[0][0].coeffs()[:-1]):  # as in sympy, a rational goes into a sum
@@ -113,10 +110,8 @@ def factored(poly: Any, wholly: int = WHOLLY_FACTORED) -> tuple[Any, list[tuple[
     return sympy_rational(int(constant.p), int(constant.q)), shown
 
 
-def _split_by_roots(poly: Any) -> tuple[Any, list[tuple[Any, int]]]:
+def _split_by_roots(poly: flint.fmpq_poly) -> tuple[flint.fmpq, list[tuple[flint.fmpq_poly, int]]]:
     """A rational, the powers of factors with the roots `ROOTS`, and the rest, as flint's `factor` gives them."""
-    import flint
-
     rest, factors = poly.numer(), []
     for root in ROOTS:
         factor, times = flint.fmpz_poly([-root.numerator, root.denominator]), 0
@@ -133,8 +128,6 @@ def _split_by_roots(poly: Any) -> tuple[Any, list[tuple[Any, int]]]:
 @lru_cache(maxsize=4096)
 def _in_lambda(coefficients: tuple[tuple[int, int], ...]) -> Any:
     """The polynomial in lambda with these coefficients, as numerators and denominators."""
-    import sympy
-
     from singimpact.algebra.long_sums import polynomial
 
     return polynomial(sympy.Symbol("lambda"), coefficients)
@@ -145,10 +138,8 @@ def rho_names(j: int, order: int) -> tuple[str, ...]:
     return tuple(f"rho_{k}" for k in range(2, order // (j + 1) + 1))
 
 
-def divisor(j: int, level: int) -> Any:
+def divisor(j: int, level: int) -> flint.fmpq_poly:
     """The divisor that the solver meets at a level, as an fmpq_poly in lambda, free of lambda and lambda - 1."""
-    import flint
-
     x = flint.fmpq_poly([0, 1])
     time = x - 1
     launch = sum((time ** (k + 1) * -_over(j, k, (k + 1) * (k + 2)) for k in range(j + 1)), x * 0)
@@ -163,16 +154,12 @@ def divisor(j: int, level: int) -> Any:
     return product / product.leading_coefficient()
 
 
-def _over(j: int, k: int, below: int) -> Any:
-    import flint
-
+def _over(j: int, k: int, below: int) -> flint.fmpq:
     return flint.fmpq(comb(j, k), below)
 
 
-def _denominator(j: int, level: int) -> Any:
+def _denominator(j: int, level: int) -> flint.fmpq_poly:
     """A multiple of the denominator of tau_level: each divisor as often as the levels below can bring it in."""
-    import flint
-
     total = flint.fmpq_poly([0, 1]) ** level
     for below in range(1, level + 1):
         total = total * divisor(j, below) ** (level // below)

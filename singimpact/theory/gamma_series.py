@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from math import comb
 from typing import Any
 
+from singimpact.algebra.taylor import dot
 from singimpact.algebra.univariate import precision_of, univariate
 from singimpact.contact.contact import Contact
 
@@ -115,13 +116,10 @@ class _Solver:
         self.motion_powers = [[one]] + [[self.lambda_**p] for p in range(1, size)]
         self.products: dict[tuple[int, int], list[Any]] = {}
         self.bracket = [self._bracket(0)]
-        self.y: list[Any] = []
-        self.slope: list[Any] = []
-        self.launch: list[Any] = []
-        self.impact: list[Any] = []
+        self.y, self.slope, self.launch, self.impact = (list[Any]() for _ in range(4))
         self.impact_powers: dict[int, list[Any]] = {1: self.impact}
         self._tangent()
-        self._extend(0, self.zero)
+        self._extend(0)
 
     def _shift(self, i: int, k: int, m: int = 0) -> int:
         """The number of levels by which X^i X'^k t^m lies above a_j."""
@@ -143,20 +141,11 @@ class _Solver:
         for table, base in ((self.tau_powers, self.tau), (self.motion_powers, [self.lambda_, *self.tau[1:]])):
             table[0].append(self.zero)
             for power in range(1, self.order - level + 1):
-                table[power].append(self._convolved(base, table[power - 1], level, power))
+                table[power].append(self.zero if power == 1 else dot(base, table[power - 1][level:0:-1]))
         self.tau.append(self.zero)
         self.bracket.append(self._bracket(level))
-        self._extend(level, self.zero)
-        rest = self._landing(level) - self._rebound(level)
-        self._correct(level, rest * (1 / self._divisor(level)))
-
-    def _convolved(self, base: list[Any], lower: list[Any], level: int, power: int) -> Any:
-        if power == 1:
-            return self.zero
-        total = base[0] * lower[level]
-        for i in range(1, level):
-            total = total + base[i] * lower[level - i]
-        return total
+        self._extend(level)
+        self._correct(level, (self._landing(level) - self._rebound(level)) * (1 / self._divisor(level)))
 
     def _bracket(self, level: int) -> Any:
         """a(sigma + z T) - (f - f(c, 0)) at one level, a polynomial in z."""
@@ -198,21 +187,14 @@ class _Solver:
 
     def _next_product(self, i: int, k: int, level: int) -> Any:
         if (i, k) == (1, 0):
-            factors = [(self.y[n], self.tau[level - n]) for n in range(level + 1)]
-        elif i:
-            factors = [(self._product(1, 0, n), self._product(i - 1, k, level - n)) for n in range(level + 1)]
-        else:
-            factors = [(self.slope[n], self._product(0, k - 1, level - n)) for n in range(level + 1)]
-        total = factors[0][0] * factors[0][1]
-        for left, right in factors[1:]:
-            total = total + left * right
-        return total
+            return dot(self.y[: level + 1], self.tau[level::-1])
+        lefts = [self._product(1, 0, n) for n in range(level + 1)] if i else self.slope[: level + 1]
+        below = (i - 1, k) if i else (0, k - 1)
+        return dot(lefts, [self._product(*below, level - n) for n in range(level + 1)])
 
-    def _extend(self, level: int, tau: Any) -> None:
+    def _extend(self, level: int) -> None:
         """y at a level from y'' = tau(sigma) bracket, y(0) = y(1) = 0."""
-        right = self.bracket[level] * self.tau[0]
-        for n in range(1, level + 1):
-            right = right + self.bracket[level - n] * (self.tau[n] if n < level else tau)
+        right = dot(self.bracket[level::-1], self.tau)
         twice = self.polys.integral(self.polys.integral(right))
         launch = self.polys.at_one(twice) * -1
         self.y.append(twice + self.polys.poly([0, 1]) * launch)
@@ -222,10 +204,7 @@ class _Solver:
 
     def _landing(self, level: int) -> Any:
         """One level of W(sigma + T)."""
-        total = self.launch[0] * self.motion_powers[self.j + 1][level]
-        for n in range(1, level + 1):
-            total = total + self.launch[n] * self.motion_powers[self.j + 1 + n][level - n]
-        return total
+        return dot(self.launch, [self.motion_powers[self.j + 1 + n][level - n] for n in range(level + 1)])
 
     def _rebound(self, level: int) -> Any:
         """One level of rho(U)."""
@@ -240,10 +219,7 @@ class _Solver:
         known = self.impact_powers.setdefault(k, [])
         while k > 1 and len(known) <= level:
             at = len(known)
-            total = self.impact[0] * self._impact_power(k - 1, at)
-            for n in range(1, at + 1):
-                total = total + self.impact[n] * self._impact_power(k - 1, at - n)
-            known.append(total)
+            known.append(dot(self.impact[: at + 1], [self._impact_power(k - 1, at - n) for n in range(at + 1)]))
         return known[level]
 
     def _divisor(self, level: int) -> Any:

@@ -12,34 +12,33 @@ so both are power series in h = ((j + 2)! D/a_j)^(1/(j + 2)), which is s to firs
 rational in the jets.  j = 0: h = sqrt(2 D/a), and the first term (1 + r) sqrt(2 a D) is Nordmark's square root.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import lru_cache
 from math import factorial
 from typing import Any
 
-import numpy as np
-
 from singimpact.algebra.expressions import Expression
+from singimpact.algebra.interpolation import RationalCoefficients
 from singimpact.algebra.jets import Jet, JetSpace
 from singimpact.algebra.numbers import constant, float_array
 from singimpact.algebra.rings import EXACT
 from singimpact.algebra.univariate import precision_of
+from singimpact.codegen.polynomial_source import function_source
 from singimpact.contact.contact import Contact, contact_order, derivative_name
+from singimpact.handed_on import flint, sympy
 from singimpact.inputs import InputError, checked_keywords, refuse, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import sign_of_acceleration
 from singimpact.theory.contact_points import Place, place
 from singimpact.theory.digits import all_digits, with_digits
-from singimpact.theory.gamma_in_symbols import length_weight
+from singimpact.theory.gamma_in_symbols import in_length, length_weight, rho_names
 from singimpact.theory.power_series import PowerSeries
 
 PARTS = ("x", "xdot", "depth", "time")
-LENGTHS = {"x": 1, "xdot": 1, "depth": 1, "time": 0}
-"""The powers of the unit of length that the parts carry."""
-MOST = {"symbols": 8, "numbers": 16}
-"""The highest order: of a generic graze in symbols (8 takes 1 s), and of a model."""
+LENGTHS = {"x": 1, "xdot": 1, "depth": 1, "time": 0}  # the powers of the unit of length that the parts carry
+MOST = {"symbols": 8, "numbers": 16}  # the highest order: of a generic graze in symbols (8 takes 1 s), and of a model
 
 
 @dataclass(frozen=True)
@@ -96,7 +95,9 @@ class GrazingMap:
         ([0.5], [1.5])
         """
         h = self.h(distance)
-        return _horner(self.x, h, self._number), _horner(self.xdot, h, self._number)
+        numbers = ({n: self._number(c) for n, c in series.coefficients.items()} for series in (self.x, self.xdot))
+        x, xdot = (PowerSeries("h", self.order, values)(h) for values in numbers)
+        return x, xdot
 
     def _number(self, value: Any) -> float:
         try:
@@ -115,8 +116,6 @@ class GrazingMap:
         >>> space["grazing_map"](0.5, a=1.0, r=0.5)  # (1 + r) sqrt(2 a D)
         (0.0, 1.5)
         """
-        from singimpact.codegen.polynomial_source import function_source
-
         letters = [*((derivative_name(self.j),) if self.names else ()), *self.names]
         says = f"x - c and x' where the motion without a wall is lowest, `distance` below it; contact order {self.j}."
         lines = [f"def {name}({', '.join(['distance', *letters])}):", f'    """{says}"""']
@@ -202,11 +201,6 @@ def _weight(name: str) -> int:
 @lru_cache(maxsize=16)
 def _generic(j: int, order: int) -> GrazingMap:
     """The map with symbols for the jets and r: lengths are first measured so that a_j/j! = 1."""
-    import sympy
-
-    from singimpact.algebra.interpolation import RationalCoefficients
-    from singimpact.theory.gamma_in_symbols import in_length, rho_names
-
     more = (*rho_names(j, order), "r")
     contact = Contact.generic(j, order, unit=True, more=more)
     ring = contact.ring
@@ -216,8 +210,6 @@ def _generic(j: int, order: int) -> GrazingMap:
     r, lambda_ = sympy.Symbol("r"), sympy.Symbol("lambda")
 
     def shown(name: str, value: Any) -> Any:
-        import flint
-
         terms: dict[Any, list[Any]] = {}
         for *jets, power in (coefficients := value.to_dict()):
             row = terms.setdefault(tuple(jets), [])
@@ -243,7 +235,6 @@ def _generic(j: int, order: int) -> GrazingMap:
 
 def _of_model(where: Place, order: int, digits: int) -> GrazingMap:
     """In rationals where the jets are rational, else in certified digits."""
-    import sympy
 
     def compute(ring: Any) -> dict[tuple[str, int], Any]:
         with precision_of(ring):
@@ -257,13 +248,11 @@ def _of_model(where: Place, order: int, digits: int) -> GrazingMap:
     except ArithmeticError:
         values = with_digits(compute, digits, all_digits)
     leading = values.pop(("leading", 0))
-    series: dict[str, dict[int, Any]] = {}
-    for (name, n), value in values.items():
-        series.setdefault(name, {})[n] = value
+    series = {name: {n: value for (owner, n), value in values.items() if owner == name} for name in PARTS}
     written = {
         name: {
             (n,): {(): Fraction(str(value)) if hasattr(value, "p") else Fraction(float(value))}
-            for n, value in series.get(name, {}).items()
+            for n, value in series[name].items()
         }
         for name in PARTS
     }
@@ -281,13 +270,6 @@ def _made(
 ) -> GrazingMap:
     x, xdot, depth, time = (PowerSeries("h", order, series.get(name, {}), digits) for name in PARTS)
     return GrazingMap(j, order, x, xdot, None if j else depth, None if j else time, leading, written, names)
-
-
-def _horner(series: PowerSeries, h: Any, number: Callable[[Any], float]) -> Any:
-    total = np.zeros_like(h)
-    for power in range(series.order, -1, -1):
-        total = total * h + number(series.coefficients.get(power, 0))
-    return total
 
 
 # ---- the expansion, over any ring

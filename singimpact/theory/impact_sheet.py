@@ -24,12 +24,6 @@ from singimpact.contact.contact import Contact
 # coordinates (s, e), launch time and landing time, iota is the exchange of s and e.
 
 
-def after_iota(v: Jet) -> Jet:
-    """v o iota for a jet in (sigma, t): impact velocity from launch velocity."""
-    sigma, t = v.space.generators()
-    return v.compose(iota(sigma, t))
-
-
 def iota(sigma: Any, t: Any) -> tuple[Any, Any]:
     """(sigma + t, -t), for numbers, jets or sympy objects alike.
 
@@ -58,7 +52,7 @@ class Sheet:
     @kept_property
     def xdot(self) -> Jet:
         """Impact velocity of the same flight: v_c after the involution [e:phi]."""
-        return after_iota(self.v)
+        return self.v.compose(iota(*self.v.space.generators()))
 
     @property
     def p(self) -> tuple[Jet, Jet]:
@@ -110,17 +104,15 @@ class _Flight:
     """Y on the unit interval, by parts of one degree in (sigma, t): X = t Y starts at j + 2, X' = Y' at j + 1."""
 
     def __init__(self, contact: Contact, space: JetSpace) -> None:
-        ring = contact.ring
-        self.contact = contact
+        self.contact, ring = contact, contact.ring
         self.engine = JetSpace(("z", "sigma", "t"), space.order, ring, (0, 1, 1)).polynomials
         self.z, sigma, self.t = self.engine.generators()
         self._clock = self.engine.add(self.engine.dot([(self.z, self.t)]), sigma)
         self._powers = [self.engine.constant(ring.rational(Fraction(1)))]
         self._minus = ring.rational(Fraction(-1))
         self._force = {pair: self.engine.constant(-value) for pair, value in contact.f.items()}
-        self._products: dict[tuple[int, int, int], Any] = {}
-        self.x: dict[int, Any] = {}
-        self.xdot: dict[int, Any] = {}
+        self._products = dict[tuple[int, int, int], Any]()
+        self.x, self.xdot = dict[int, Any](), dict[int, Any]()
 
     def twice_integrated(self, degree: int) -> Any:
         """The right side of one degree, integrated twice from z = 0."""

@@ -4,14 +4,15 @@ At contact order j, r = lambda^(j+1) P_j/Q_j.  At r = 0 the variable is w = (r/(
 all series have rational coefficients.
 """
 
-from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
 import sympy
+from flint import fmpq, fmpq_poly, fmpq_series
 
 from singimpact.algebra.derivations import At, motion, substitution
 from singimpact.algebra.gathering import remembered
+from singimpact.algebra.precision import series_of_any_length
 from singimpact.contact.contact import contact_order
 from singimpact.inputs import checked_keywords, refuse
 
@@ -37,10 +38,14 @@ def launch_velocity(j: int, sigma: Any, e: Any) -> Any:
 @remembered
 def P(j: int) -> Any:
     """P_j(lambda) = sum (j+1-i) lambda^i: the launch velocity at (1, lambda) without its factor 1 - lambda."""
-    ratio = sympy.cancel((j + 1) * (j + 2) * launch_velocity(j, sympy.Integer(1), lambda_) / (1 - lambda_))
+    return _without_zero(j, sympy.Integer(1), lambda_)
+
+
+def _without_zero(j: int, sigma: Any, e: Any) -> Any:
+    """The launch velocity times (j + 1)(j + 2) without its factor sigma - e, a polynomial in lambda."""
+    ratio = sympy.cancel((j + 1) * (j + 2) * launch_velocity(j, sigma, e) / (sigma - e))
     found = sympy.Poly(ratio, lambda_).as_expr()
-    at_one = At((j + 1) * (j + 2) * _launched(j), {_s: sympy.Integer(1), _e: lambda_})
-    substitution(At((1 - lambda_) * _X, {_X: found}), at_one)
+    substitution(At((sigma - e) * _X, {_X: found}), At((j + 1) * (j + 2) * _launched(j), {_s: sigma, _e: e}))
     return found
 
 
@@ -59,11 +64,7 @@ def _launched(j: int) -> Any:
 @remembered
 def Q(j: int) -> Any:
     """Q_j(lambda): the reversal of P_j, which the involution makes of it."""
-    ratio = sympy.cancel((j + 1) * (j + 2) * launch_velocity(j, lambda_, sympy.Integer(1)) / (lambda_ - 1))
-    found = sympy.Poly(ratio, lambda_).as_expr()
-    at_one = At((j + 1) * (j + 2) * _launched(j), {_s: lambda_, _e: sympy.Integer(1)})
-    substitution(At((lambda_ - 1) * _X, {_X: found}), at_one)
-    return found
+    return _without_zero(j, lambda_, sympy.Integer(1))
 
 
 @checked_keywords
@@ -153,7 +154,7 @@ def eigenvalues_on_gamma(j: int) -> tuple[Any, Any]:
 
 
 Series = list[Fraction]
-OFFSETS = {"m3": Fraction(1, 2), "m_star": Fraction(-1), "lambda": Fraction(0)}
+OFFSETS = {"m3": fmpq(1, 2), "m_star": fmpq(-1), "lambda": fmpq(0)}
 
 
 def of_m(at: str | int = "tangency") -> dict[str, Any]:
@@ -164,8 +165,7 @@ def of_m(at: str | int = "tangency") -> dict[str, Any]:
     >>> of_m("tangency")["r"]
     (2*m - 1)**2*(2*m + 3)/(16*m)
     """
-    j = _order(at)
-    m = sympy.Symbol("m")
+    j, m = _order(at), sympy.Symbol("m")
     rate = m - (sympy.Rational(1, 2) if j == 1 else -1)
     functions = {"r": r_of_lambda(j), "lambda": lambda_, "mu": mu_of_lambda(j)}
     return {name: sympy.factor(value.subs(lambda_, rate)) for name, value in functions.items()}
@@ -217,15 +217,15 @@ def series(quantity: str, end: int, order: int, at: str | int = "tangency") -> S
         raise refuse("order", order, "a whole number from 0 to 200")
     if quantity not in (*OFFSETS, "mu") or (quantity == "m3") > (j == 1) or (quantity == "m_star") > (j != 1):
         raise refuse("quantity", quantity, "'lambda', 'mu', 'm3' at a tangency or 'm_star' elsewhere")
-    rate = (_at_zero if end == 0 else _at_one)(j, order + 1)
-    if quantity == "mu":
-        return _mu(j, rate, end)[: order + 1]
-    return [value + (OFFSETS[quantity] if n == 0 else 0) for n, value in enumerate(rate[: order + 1])]
+    with series_of_any_length():
+        rate = (_at_zero if end == 0 else _at_one)(j, order + 1)
+        if quantity == "mu":
+            return _numbers(_mu(j, rate, end), order + 1)
+        return _numbers(rate + fmpq_series([OFFSETS[quantity]], prec=order + 2), order + 1)
 
 
-def _coefficients(polynomial: Any) -> Series:
-    """Of a polynomial in lambda, from the constant one."""
-    return [Fraction(int(value)) for value in reversed(sympy.Poly(polynomial, lambda_).all_coeffs())]
+def _numbers(values: fmpq_series, count: int) -> Series:
+    return [Fraction(int(values[n].p), int(values[n].q)) for n in range(count)]
 
 
 def _order(at: str | int) -> int:
@@ -235,82 +235,30 @@ def _order(at: str | int) -> int:
     return j
 
 
-def _at_zero(j: int, order: int) -> Series:
+def _coefficients(polynomial: Any) -> fmpq_poly:
+    """A polynomial in lambda with whole coefficients."""
+    return fmpq_poly([int(value) for value in reversed(sympy.Poly(polynomial, lambda_).all_coeffs())])
+
+
+def _at_zero(j: int, order: int) -> fmpq_series:
     """lambda in powers of w, from lambda ((P/Q)/(j+1))^(1/(j+1)) = w."""
-    p = [value / (j + 1) for value in _coefficients(P(j))]
-    q = _coefficients(Q(j))
-    ratio = _times(_padded(p, order), _inverse(_padded(q, order)))
-    root = _power(ratio, Fraction(1, j + 1))
-    return _reversed([Fraction(0), *root[:order]])
+    p, q = (fmpq_series(_coefficients(part), prec=order + 1) for part in (P(j), Q(j)))
+    root = ((p / q / (j + 1)).log() / (j + 1)).exp()
+    return (root * fmpq_series([0, 1], prec=order + 1)).reversion()
 
 
-def _at_one(j: int, order: int) -> Series:
+def _at_one(j: int, order: int) -> fmpq_series:
     """lambda in powers of 1 - r: 1 - u with 1 - r(1 - u) a series in u that begins with a linear term."""
-    low = [Fraction(0)] * (j + 1) + _coefficients(P(j))
-    p = _padded(_mirrored(low), order)
-    q = _padded(_mirrored(_coefficients(Q(j))), order)
-    rate = _times(p, _inverse(q))
-    gap = _reversed([Fraction(0)] + [-value for value in rate[1:]])
-    return [Fraction(1) - gap[0], *(-value for value in gap[1:])]
+    p, q = (_coefficients(part)(fmpq_poly([1, -1])) for part in (lambda_ ** (j + 1) * P(j), Q(j)))
+    rate = fmpq_series(p, prec=order + 1) / fmpq_series(q, prec=order + 1)
+    return 1 - (1 - rate).reversion()
 
 
-def _mu(j: int, rate: Series, end: int) -> Series:
+def _mu(j: int, rate: fmpq_series, end: int) -> fmpq_series:
     """(P/Q)^2/lambda along a series of lambda; at r = 0 times w."""
-    p, q = _coefficients(P(j)), _coefficients(Q(j))
-    square = _power(_times(_along(p, rate), _inverse(_along(q, rate))), Fraction(2))
-    below = rate[1:] if end == 0 else rate
-    return _times(square[: len(below)], _inverse(below))
-
-
-def _padded(values: Sequence[Fraction], order: int) -> Series:
-    return (list(values) + [Fraction(0)] * (order + 1))[: order + 1]
-
-
-def _times(left: Series, right: Series) -> Series:
-    return [sum((left[k] * right[n - k] for k in range(n + 1)), Fraction(0)) for n in range(min(len(left), len(right)))]
-
-
-def _inverse(values: Series) -> Series:
-    return _power(values, Fraction(-1))
-
-
-def _power(values: Series, exponent: Fraction) -> Series:
-    """values ** exponent, by its differential equation; a constant term other than 1 needs a whole exponent."""
-    start = values[0]
-    first = start**exponent.numerator if exponent.denominator == 1 else Fraction(1)
-    if exponent.denominator != 1 and start != 1:
-        raise ArithmeticError("a root of a series needs the constant term 1")
-    result = [first]
-    for n in range(1, len(values)):
-        total = sum(((exponent * k - (n - k)) * values[k] * result[n - k] for k in range(1, n + 1)), Fraction(0))
-        result.append(total / (n * start))
-    return result
-
-
-def _reversed(values: Series) -> Series:
-    """The inverse function of a series without constant term, by Lagrange's formula."""
-    order = len(values) - 1
-    ratio = _inverse(values[1:])  # z/f(z)
-    found, power = [Fraction(0)], _padded([Fraction(1)], order - 1)
-    for n in range(1, order + 1):
-        power = _times(power, ratio)
-        found.append(power[n - 1] / n)
-    return found
-
-
-def _along(polynomial: Series, inner: Series) -> Series:
-    """A polynomial of a series."""
-    total = [Fraction(0)] * len(inner)
-    for value in reversed(polynomial):
-        total = _times(total, inner)
-        total[0] += value
-    return total
-
-
-def _mirrored(polynomial: Series) -> Series:
-    """The polynomial at 1 - u, in powers of u."""
-    total = [Fraction(0)]
-    for value in reversed(polynomial):
-        total = [a + b for a, b in zip([*total, Fraction(0)], [Fraction(0), *(-x for x in total)], strict=True)]
-        total[0] += value
-    return total
+    p, q = (
+        sum((fmpq_series([c]) * rate**n for n, c in enumerate(_coefficients(part).coeffs())), 0 * rate)
+        for part in (P(j), Q(j))
+    )
+    below = fmpq_series(rate.coeffs()[1:], prec=rate.prec - 1) if end == 0 else rate
+    return p * p / (q * q * below)

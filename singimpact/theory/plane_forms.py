@@ -19,7 +19,7 @@ from singimpact.algebra.long_sums import LongSum
 from singimpact.algebra.polynomials import Exponents
 from singimpact.algebra.rings import EXACT, SymbolRing
 from singimpact.contact.contact import Contact, contact_order, derivative_name
-from singimpact.germs.germ_forms import NormalForm, normal_form as reduced
+from singimpact.germs import NormalForm, normal_form as reduced
 from singimpact.inputs import InputError, checked_keywords, refuse, whole
 from singimpact.theory.contact_points import exact_contact, place
 from singimpact.theory.digits import sympy_digits, with_digits
@@ -95,8 +95,7 @@ def cubic_terms() -> dict[tuple[int, int], Any]:
     made = _sheet(3)
     folded = _shown(_in_eta(made.v), made)
     substitution(At(made.to_sympy(made.v), {t: eta - 3 * sigma / 2}), folded)
-    poly = sympy.Poly(folded, sigma, eta)
-    return {key: value for key, value in poly.terms() if sum(key) == 3}
+    return {key: value for key, value in sympy.Poly(folded, sigma, eta).terms() if sum(key) == 3}
 
 
 @remembered

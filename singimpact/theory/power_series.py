@@ -7,6 +7,7 @@ from typing import Any
 
 from singimpact.algebra.certified import Certified
 from singimpact.algebra.precision import kept_property
+from singimpact.handed_on import sympy
 from singimpact.inputs import InputError, refuse
 
 
@@ -61,8 +62,6 @@ class PowerSeries:
             raise refuse("power", power, f"a whole number from 0 to {self.order}: the series is cut there")
         if power in self.coefficients:
             return self.coefficients[power]
-        import sympy
-
         return sympy.Integer(0)
 
     def __len__(self) -> int:
@@ -94,8 +93,6 @@ class PowerSeries:
 
     def as_expr(self) -> Any:
         """The series as a sympy expression in its variable."""
-        import sympy
-
         letter = sympy.Symbol(self.variable)
         shown = {
             n: sympy.Float(c, self.digits) if hasattr(c, "_mpf_") and not hasattr(c, "free_symbols") else c
@@ -108,8 +105,6 @@ class PowerSeries:
 
     def _latex(self, printer: object = None) -> str:  # noqa: ARG002
         """The series in the paper's letters, for `sympy.latex`."""
-        import sympy
-
         from singimpact.theory.notation import joined, latex, name_of
 
         letter = sympy.Symbol(self.variable)

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from singimpact import cache
-from singimpact.paper.figures import registry as kept_figures
+from singimpact.paper import figures as kept_figures
 from singimpact.scenes import keep, recall
 from singimpact.surface import Curve
 

@@ -7,7 +7,7 @@ import pytest
 import singimpact as si
 from singimpact.inputs import TWO_WALLS, InputError
 
-PAIR = si.linear("2.8", "-0.5", "0.8", upper="0.5", upper_restitution="0.7")
+PAIR = si.linear("2.8", "-0.5", "0.8", upper=("0.5", "0.7"))
 SENTENCE = "a second at upper = '0.5': give osc.one_wall"
 MODEL_ONLY = {
     "force", "forcing", "mirrored", "one_wall", "replace", "rho", "rho_at_rest", "slope_at_rest", "to_dict",

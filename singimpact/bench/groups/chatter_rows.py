@@ -2,19 +2,21 @@
 wanted; and c = 0.7 or Duffing's model, from other states in every timed call. A threshold is a case of `bench public`.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 from math import cos
 from typing import Any
 
-from singimpact.bench.drawn import CHATTERING, Draws, States, counted, model, pressing
+import mpmath
+
+from singimpact.bench.drawn import CHATTERING, Draws, Problem, States, counted, model, pressing, values
 from singimpact.bench.groups.impact_map_rows import ACCURACY, HEYOKA, SCIPY, taylor_stepper
 from singimpact.bench.measuring import Case, Effort, Method, condition, with_peers
-from singimpact.bench.peers import followed_impacts, many_digits, runge_kutta, taylor_events
-from singimpact.bench.problems import Problem, values
+from singimpact.bench.peers import followed_impacts, runge_kutta, taylor_events
+from singimpact.bench.peers.followed_impacts import Fly
 from singimpact.dynamics.threshold import threshold
-from singimpact.impact_oscillator import linear
+from singimpact.impact_oscillator import ImpactOscillator, linear
 
 STATE = "1.2", "0.01"
 NAME = "chatter.tau_inf.linear[w=2,c=0.3,r={}](1.2,0.01)"
@@ -51,18 +53,16 @@ def _case(r: str, effort: Effort) -> Case:
     return Case(f"linear, r = {r}", methods, [values()[NAME.format(r)]], [kappa], skipped)
 
 
-def _flown(name: str, fly: Callable[[Problem], tuple[Any, Any]], problem: Problem, stop: float) -> Method:
+def _flown(name: str, fly: Fly, problem: Problem, stop: float) -> Method:
     return Method(name, f"until v < {stop:.0e}", lambda: [followed_impacts.chatter_limit(fly, problem, stop, cos)])
 
 
 def _in_digits(problem: Problem, stop: float, digits: int) -> Method:
-    import mpmath
-
     def run() -> list[Any]:
         with mpmath.workdps(digits):
             c, r, tau, v = (mpmath.mpf(text) for text in ("0.3", str(problem.restitution), *STATE))
             exact = replace(problem, clearance=c, restitution=r, tau=tau, v=v)
-            return [followed_impacts.chatter_limit(many_digits.root_of_closed_form, exact, stop, mpmath.cos)]
+            return [followed_impacts.chatter_limit(root_of_closed_form, exact, stop, mpmath.cos)]
 
     return Method(f"mpmath findroot, dps {digits}", f"until v < {stop:.0e}", run)
 
@@ -100,17 +100,17 @@ def _an_array(states: States) -> Any:
     return states.osc.chatter_limit(states.tau, states.v).tau
 
 
-def _in_digits_of(osc: Any, states: States) -> tuple[list[Any], list[float]]:
+def _in_digits_of(osc: ImpactOscillator, states: States) -> tuple[list[Any], list[float]]:
     """Limits with 25 digits: of linear models enclosures, which share no flight with the answers in doubles."""
     pairs = list(zip(states.tau.tolist(), states.v.tolist(), strict=True))
     kappas = [condition(lambda tau, v: float(osc.chatter_limit(tau, v).tau), tau, v, 1e-4) for tau, v in pairs]
     return [osc.chatter_limit(tau, v, digits=25).tau for tau, v in pairs], kappas
 
 
-def summed(name: str, fly: Any, draw: Draws) -> Method:
+def summed(name: str, fly: Fly, draw: Draws) -> Method:
     """A peer that flies until v is a thousandth, and adds the rest by its first term."""
 
-    def run(problems: Any) -> list[Any]:
+    def run(problems: list[Problem]) -> list[Any]:
         return [followed_impacts.chatter_limit(fly, each, TO * each.v, cos) for each in problems]
 
     tolerance = f"tolerance {ACCURACY[name]:.0e}, " if name in ACCURACY else ""
@@ -149,11 +149,62 @@ def _a_phase(states: States) -> list[float]:
     return [float(threshold(states.osc, tau).v) for tau in states.tau.tolist()]
 
 
-def between(name: str, fly: Any, draw: Draws) -> Method:
+def between(name: str, fly: Fly, draw: Draws) -> Method:
     """A peer that bisects between a v whose chatter completes and one that loses contact."""
     end = pressing(draw.family)[1]
 
-    def run(problems: Any) -> list[Any]:
+    def run(problems: list[Problem]) -> list[Any]:
         return [followed_impacts.threshold(fly, replace(each, v=GUESS), end, WIDTH) for each in problems]
 
     return Method(name, f"{counted(draw.count, 'phase')}, to {WIDTH:.0e}", run, draw=lambda: draw().problems())
+
+
+# mpmath at the working precision: `findroot` on the closed form of a flight.
+
+SCAN = 0.05  # step of the scan for a change of sign, as a user would choose it: a hundredth of a period
+LONGEST = 1000.0
+GUARD = 20  # digits that (x - c)/s may lose: without them the secant never settles for v below 1e-3, and fails
+
+
+def root_of_closed_form(problem: Problem) -> tuple[Any, Any]:
+    """First root of (x - c)/s of the linear oscillator, omega != 1, from a guess; time and velocity, nan if none.
+
+    The guess is 2v/|a_c| where the obstacle presses, else the first change of sign of a scan.
+    """
+    with mpmath.extradps(GUARD):
+        found = _closed_form(problem, mpmath.mpf(10) ** (GUARD - mpmath.mp.dps))
+    return +found[0], +found[1]
+
+
+def _closed_form(problem: Problem, precise: Any) -> tuple[Any, Any]:
+    omega, c, tau, v = (mpmath.mpf(value) for value in (problem.omega, problem.clearance, problem.tau, problem.v))
+    size = 1 / (1 - omega**2)
+    by_cos, by_sin = c - size * mpmath.cos(omega * tau), v + size * omega * mpmath.sin(omega * tau)
+
+    def lifted(s: Any) -> Any:
+        return (size * mpmath.cos(omega * (tau + s)) + by_cos * mpmath.cos(s) + by_sin * mpmath.sin(s) - c) / s
+
+    a = mpmath.cos(omega * tau) - c
+    near = -2 * v / a if a < 0 else mpmath.inf
+    guesses = (near, near * 1.05) if near < SCAN else _scanned(lifted)
+    try:
+        time = mpmath.findroot(lifted, guesses, tol=precise * guesses[0])
+    except (ValueError, ZeroDivisionError):  # there is none, or it did not converge
+        return mpmath.nan, mpmath.nan
+    slope = -size * omega * mpmath.sin(omega * (tau + time)) - by_cos * mpmath.sin(time) + by_sin * mpmath.cos(time)
+    return time, slope
+
+
+def _scanned(lifted: Any) -> tuple[Any, Any]:
+    """The ends of the first step of the scan at which x < c.
+
+    Raises
+    ------
+    ValueError : none before the longest flight.
+    """
+    s = mpmath.mpf(SCAN)
+    while s < LONGEST:
+        if lifted(s) < 0:
+            return s - SCAN + mpmath.eps, s
+        s += SCAN
+    raise ValueError("no change of sign")

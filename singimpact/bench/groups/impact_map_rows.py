@@ -4,15 +4,17 @@ Every timed call has other states, and another restitution from 0.5 to 0.999; th
 by balls (`truth.drawn_flights`).
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache, partial
 from typing import Any
 
-from singimpact.bench.drawn import Draws, States, counted
+from singimpact.bench.drawn import Draws, Problem, States, counted
 from singimpact.bench.measuring import Case, Effort, Method, with_peers
 from singimpact.bench.peers import runge_kutta, taylor_events
+from singimpact.bench.peers.followed_impacts import Fly
 from singimpact.bench.truth import drawn_flights
+from singimpact.impact_oscillator import ImpactOscillator
 
 HEYOKA, SCIPY = "heyoka, terminal event", "scipy DOP853, terminal event"
 ACCURACY = {HEYOKA: 2.0**-52, SCIPY: 1e-12}
@@ -59,13 +61,13 @@ def map_case(family: str, kind: str, alone: bool, sizes: Sizes) -> Case:
     return Case(f"{family}, {kind}, {setting}", methods, truth, kappas, skipped)
 
 
-def _in_floats(draw: Draws) -> Any:
+def _in_floats(draw: Draws) -> tuple[ImpactOscillator, list[tuple[float, float]]]:
     """A model and its states as floats, which are made outside the clock."""
     states = draw()
     return states.osc, list(zip(states.tau.tolist(), states.v.tolist(), strict=True))
 
 
-def _one_a_call(drawn: Any) -> list[float]:
+def _one_a_call(drawn: tuple[ImpactOscillator, list[tuple[float, float]]]) -> list[float]:
     osc, states = drawn
     return [osc.impact_map(tau, v).flight_time for tau, v in states]
 
@@ -75,20 +77,20 @@ def _array(states: States) -> Any:
 
 
 @lru_cache(maxsize=4)
-def taylor_stepper(family: str) -> Any:
+def taylor_stepper(family: str) -> Fly:
     """heyoka's integrator, compiled once."""
     return taylor_events.stepper(family, ACCURACY[HEYOKA])
 
 
-def _time(fly: Any) -> Any:
+def _time(fly: Fly) -> Callable[[Problem], Sequence[float]]:
     """The flight time alone of what a stepper gives."""
     return lambda problem: fly(problem)[:1]
 
 
-def _peer(name: str, fly: Any, draw: Draws) -> Method:
+def _peer(name: str, fly: Callable[[Problem], Sequence[float]], draw: Draws) -> Method:
     """A peer, which flies one state after another; `fly` gives a list of numbers a state."""
 
-    def run(problems: Any) -> list[Any]:
+    def run(problems: list[Problem]) -> list[float]:
         return [number for problem in problems for number in fly(problem)]
 
     setting = f"tolerance {ACCURACY[name]:.0e}, {counted(draw.count, 'state')}"

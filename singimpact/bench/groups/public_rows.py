@@ -95,7 +95,7 @@ def _own_orbits(impacts: int, states: States) -> Counted:
     return Counted(flown, list(chain.from_iterable(orbit.tau[list(FIRST)].tolist() for orbit in orbits)))
 
 
-def _chained(name: str, fly: Any, draw: Draws, impacts: int) -> Method:
+def _chained(name: str, fly: followed_impacts.Fly, draw: Draws, impacts: int) -> Method:
     def run(problems: Any) -> Counted:
         times = [followed_impacts.chain(fly, problem, impacts) for problem in problems]
         return Counted(impacts * len(times), [each[number - 1] for each in times for number in FIRST])

@@ -10,7 +10,7 @@ import numpy as np
 from numba import njit
 
 from singimpact.algebra.numbers import Array
-from singimpact.bench.problems import Problem
+from singimpact.bench.drawn import Problem
 
 STEPS = 1000  # of a period
 LONGEST = 300  # periods after which a flight is given up

@@ -5,7 +5,7 @@ from dataclasses import replace
 from math import cos
 from typing import Any
 
-from singimpact.bench.problems import Problem
+from singimpact.bench.drawn import Problem
 
 Fly = Callable[[Problem], tuple[Any, Any]]
 MOST = 2000  # impacts, after which a peer that does not get on is given up; the right answers take below 300

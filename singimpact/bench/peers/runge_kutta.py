@@ -4,13 +4,15 @@ from collections.abc import Callable
 from math import cos, nan, sin
 from typing import Any
 
-from singimpact.bench.peers.followed_impacts import derivative_of_map
-from singimpact.bench.problems import Problem
+from scipy.integrate import solve_ivp
+
+from singimpact.bench.drawn import Problem
+from singimpact.bench.peers.followed_impacts import Fly, derivative_of_map
 
 LONGEST = 1000.0  # time after which a flight is given up
 
 
-def stepper(family: str, tolerance: float = 1e-9) -> Any:
+def stepper(family: str, tolerance: float = 1e-9) -> Fly:
     """A function from a problem to its first event: time since the launch, velocity; nan when none is found."""
 
     def fly(problem: Problem) -> tuple[float, float]:
@@ -24,7 +26,7 @@ def stepper(family: str, tolerance: float = 1e-9) -> Any:
     return fly
 
 
-def varied(tolerance: float = 1e-9) -> Any:
+def varied(tolerance: float = 1e-9) -> Callable[[Problem], list[float]]:
     """A function from a problem of the linear family to the four entries of D G, from the variational equation."""
 
     def fly(problem: Problem) -> list[float]:
@@ -43,7 +45,6 @@ def _first_event(
     problem: Problem, field: Callable[[float, Any], list[float]], start: list[float], tolerance: float
 ) -> tuple[float, list[float]]:
     """The time and the state at which x falls through c; nan when it does not."""
-    from scipy.integrate import solve_ivp
 
     def event(t: float, y: Any) -> float:  # noqa: ARG001
         return float(y[0] - problem.clearance)

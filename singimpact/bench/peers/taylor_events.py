@@ -5,14 +5,14 @@ from math import nan
 from types import ModuleType
 from typing import Any
 
+from singimpact.bench.drawn import Problem
 from singimpact.bench.measuring import NotInstalled
-from singimpact.bench.peers.followed_impacts import derivative_of_map
-from singimpact.bench.problems import Problem
+from singimpact.bench.peers.followed_impacts import Fly, derivative_of_map
 
 LONGEST = 1000.0  # time after which a flight is given up
 
 
-def stepper(family: str, tolerance: float = 2.0**-52) -> Any:
+def stepper(family: str, tolerance: float = 2.0**-52) -> Fly:
     """A function from a problem to its first event: time since the launch, velocity. The integrator is compiled here.
 
     Raises
@@ -31,7 +31,7 @@ def stepper(family: str, tolerance: float = 2.0**-52) -> Any:
     return fly
 
 
-def varied(tolerance: float = 2.0**-52) -> Any:
+def varied(tolerance: float = 2.0**-52) -> Callable[[Problem], list[float]]:
     """A function from a problem of the linear family to the four entries of D G, from the variational equation.
 
     Raises

@@ -7,6 +7,7 @@ Fixed steps and balls (`bench.truth`) share with the package f and g as expressi
 from dataclasses import dataclass
 from typing import Any
 
+import flint
 import numpy as np
 
 from singimpact.algebra.numbers import EPSILON
@@ -57,7 +58,7 @@ def fixed_steps(flown: Flown) -> Row:
     return tally.row()
 
 
-def _one(flown: Flown, at: int, motion: Any, tally: Tally) -> None:
+def _one(flown: Flown, at: int, motion: graded_steps.Motion, tally: Tally) -> None:
     tau, v, horizon = float(flown.tau[at]), float(flown.v[at]), flown.scales.horizon
     if flown.step.status[at] in (Status.unresolved, Status.graze):
         tally.leave(Status(int(flown.step.status[at])).name)
@@ -79,7 +80,7 @@ def _ending(true: graded_steps.Hit) -> tuple[float | None, float]:
     return (true.flight_time if true.status == HIT else None), true.velocity
 
 
-def _arbitrated(flown: Flown, at: int, motion: Any, before: float) -> tuple[float, bool]:
+def _arbitrated(flown: Flown, at: int, motion: graded_steps.Motion, before: float) -> tuple[float, bool]:
     """The difference from the ball, or from finer steps where there is no ball; and whether one of these decides."""
     tau, v, horizon = float(flown.tau[at]), float(flown.v[at]), flown.scales.horizon
     try:
@@ -162,8 +163,6 @@ def _compared(flown: Flown, at: int, truth: tuple[Any, Any], tally: Tally) -> No
 def _relative(found: float, true: Any) -> float:
     """|found/true - 1| for a ball or a number of many digits."""
     if hasattr(true, "mid"):
-        import flint
-
         with balls_at(256):
             return float(abs(flint.arb(float(found)) / true - 1).mid())
     with digits_at(2 * TRUTHS.wanted) as mp:

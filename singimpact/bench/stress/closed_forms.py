@@ -5,6 +5,8 @@ from collections.abc import Iterator
 from functools import partial
 from typing import Any
 
+import mpmath
+
 from singimpact.bench.stress.judging import Function, Trial, moved, powers
 from singimpact.branches.branch import branch
 from singimpact.branches.event_curve import event_curve
@@ -29,8 +31,6 @@ def _launched(place: str, points: int) -> Iterator[Trial]:
 
 
 def _fall(x: Any, speed: Any, r: Any) -> list[Any]:
-    import mpmath
-
     root = mpmath.sqrt(speed**2 + 4 * x)
     return [(speed + root) / 2, r * root]
 
@@ -48,8 +48,6 @@ def _exponents(place: str, points: int) -> Iterator[Trial]:
 
 
 def _shrinking(impacts: int, r: Any, first: Any, last: Any, time: Any) -> list[Any]:
-    import mpmath
-
     return [2 * impacts * mpmath.log(r) + mpmath.log(first / last) - time / 20]
 
 
@@ -69,8 +67,6 @@ def _closed_form(near: list[float], omega: Any, c: Any, r: Any) -> list[Any]:
 
     alpha omega sin(omega tau) = v (1 - r)/(2 r),  c - alpha cos(omega tau) = v (1 + r)/(2 r tan(T/2)),  T = 2 pi/omega
     """
-    import mpmath
-
     alpha = 1 / (1 - omega**2)
     across, along = (1 - r) / (2 * r * omega), (1 + r) / (2 * r * mpmath.tan(mpmath.pi / omega))
     # (across v)^2 + (c - along v)^2 = alpha^2
@@ -82,7 +78,7 @@ def _closed_form(near: list[float], omega: Any, c: Any, r: Any) -> list[Any]:
     return [phase + turn * mpmath.nint((near[0] - phase) / turn), v]
 
 
-def _grazes(name: str, curve: bool, points: int) -> Iterator[Trial]:
+def _grazes(curve: bool, name: str, points: int) -> Iterator[Trial]:
     """The graze on the branch of (1, 1) orbits of x'' + x'/10 + x = A cos(omega t): A = |1 - omega^2 + i omega/10|."""
     for off in powers(max(points // 3, 2), 6):
         omega, r, near = {
@@ -109,37 +105,23 @@ def _grazes(name: str, curve: bool, points: int) -> Iterator[Trial]:
 
 
 def _touching(omega: Any, damping: Any) -> list[Any]:
-    import mpmath
-
     return [-mpmath.sqrt((1 - omega**2) ** 2 + (damping * omega) ** 2)]
 
 
-BRANCHES = ("v -> 0", "omega -> 1", "r -> 0", "r -> 1")
+CLOSED_FORM = "closed form"
 GRAZES = "its grazes are judged, which have no other states"
 FUNCTIONS = (
-    Function(
+    Function.at(
+        ("t -> 0", "r -> 0", "r -> 1"),
         "launch",
-        {place: partial(_launched, place) for place in ("t -> 0", "r -> 0", "r -> 1")},
-        "closed form",
+        _launched,
+        CLOSED_FORM,
         "its first impact is judged, of a fall; others are those of first_hit",
     ),
-    Function(
-        "lyapunov",
-        {place: partial(_exponents, place) for place in ("omega -> 1", "r -> 1")},
-        "closed form",
-        "the sum of both is judged, along one orbit",
+    Function.at(
+        ("omega -> 1", "r -> 1"), "lyapunov", _exponents, CLOSED_FORM, "the sum of both is judged, along one orbit"
     ),
-    Function(
-        "periodic",
-        {place: partial(_periodic, place) for place in ("omega -> 1", "r -> 1")},
-        "closed form",
-        "its states are answers, not given",
-    ),
-    Function("branch", {place: partial(_grazes, place, False) for place in BRANCHES}, "closed form", GRAZES),
-    Function(
-        "event_curve",
-        {place: partial(_grazes, place, True) for place in BRANCHES if place != "omega -> 1"},
-        "closed form",
-        GRAZES,
-    ),
+    Function.at(("omega -> 1", "r -> 1"), "periodic", _periodic, CLOSED_FORM, "its states are answers, not given"),
+    Function.at(("v -> 0", "omega -> 1", "r -> 0", "r -> 1"), "branch", partial(_grazes, False), CLOSED_FORM, GRAZES),
+    Function.at(("v -> 0", "r -> 0", "r -> 1"), "event_curve", partial(_grazes, True), CLOSED_FORM, GRAZES),
 )

@@ -1,16 +1,29 @@
-"""Series at doubles: v_c on arrays, emitted source, gamma, the completion, against the same series in 60 digits."""
+"""Series at doubles against 60 digits; chatter limits, thresholds and grown curves against `digits=`.
+
+Series: v_c on arrays, emitted source, gamma, the completion.  The `digits=` are of ball arithmetic.
+"""
 
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 from fractions import Fraction
 from functools import cache, partial
 from typing import Any
 
+import mpmath
+import numpy as np
+
 from singimpact import theory
 from singimpact.algebra.rings import EXACT
+from singimpact.bench.measuring import condition
 from singimpact.bench.stress.judging import DIGITS, Function, Trial, moved, number, powers
+from singimpact.bench.stress.launches import Launch
 from singimpact.codegen.over_lists import plain
 from singimpact.contact.contact import Contact
+from singimpact.dynamics.invariant_arcs import grown_gamma, stable_manifold
+from singimpact.dynamics.threshold import threshold
 from singimpact.impact_oscillator import ImpactOscillator, linear
+from singimpact.status import Status
+from singimpact.surface.curve import Window
 from singimpact.theory.frozen import sheet_functions
 from singimpact.theory.impact_sheet import sheet
 
@@ -43,8 +56,6 @@ def _weak(points: int) -> Iterator[tuple[Fraction, float, float]]:
 
 def _zero(impact: bool, points: int) -> Iterator[tuple[Fraction, float, float]]:
     """Next to where v (or x' at the landing) vanishes: from the root of the cut series in t at sigma = -1/8."""
-    import mpmath
-
     terms, sigma = _terms(Fraction(1, 3), impact), mpmath.mpf(-0.125)
     with mpmath.workdps(DIGITS):
         t = mpmath.findroot(lambda t: _value(terms, sigma, t) / t, 0.19 if impact else 0.37)
@@ -74,7 +85,7 @@ def _value(terms: Mapping[tuple[int, ...], Fraction], sigma: Any, t: Any) -> Any
     return sum(number(value) * sigma**i * t**k for (i, k), value in terms.items())
 
 
-def _on_arrays(place: str, compensated: bool, points: int) -> Iterator[Trial]:
+def _on_arrays(compensated: bool, place: str, points: int) -> Iterator[Trial]:
     impact, states = PLACES[place]
     for bend, sigma, t in states(points):
         function = theory.v_c_on_arrays(ORDER, "tangency", model(bend), "0", impact=impact, compensated=compensated)
@@ -83,15 +94,10 @@ def _on_arrays(place: str, compensated: bool, points: int) -> Iterator[Trial]:
         yield Trial(name, [float(function(sigma, t))], values, rounding)
 
 
-@cache
-def _emitted() -> dict[str, Any]:
-    return plain("\n\n".join(sheet_functions(ORDER)), {"Any": Any})
-
-
 def _emitted_numpy(name_: str, points: int) -> Iterator[Trial]:
     """The emitted code on doubles against the same code on numbers of 60 digits; the jets are inputs too."""
     impact, states = PLACES[name_]
-    function = _emitted()["xdot_c_tangency" if impact else "v_c_tangency"]
+    function = plain("\n\n".join(sheet_functions(ORDER)), {"Any": Any})["xdot_c_tangency" if impact else "v_c_tangency"]
     names = function.__code__.co_varnames[2 : function.__code__.co_argcount]
     for bend, sigma, t in states(points):
         arguments = [{**JETS, "a_d1": float(3 * bend)}.get(name, 0.0) for name in names]
@@ -104,16 +110,11 @@ def _emitted_numpy(name_: str, points: int) -> Iterator[Trial]:
         )
 
 
-def _cut(series: Any) -> Callable[[Any], list[Any]]:
-    known = {n: part.value for n, part in series.certified(DIGITS).items()}
-    return lambda value: [sum(number(c) * value**n for n, c in known.items())]
-
-
 def _series(made: Any, name: str, states: list[float]) -> Iterator[Trial]:
     """A series at doubles against its certified coefficients summed in 60 digits."""
-    true = _cut(made)
+    coefficients = {n: part.value for n, part in made.certified(DIGITS).items()}
     for at in states:
-        values, rounding = moved(true, [at])
+        values, rounding = moved(lambda value: [sum(number(c) * value**n for n, c in coefficients.items())], [at])
         yield Trial(f"{name}, {made.variable} = {at!r}", [float(made(at))], values, rounding)
 
 
@@ -149,34 +150,130 @@ def _completion(name: str, points: int) -> Iterator[Trial]:
             yield from _series(series, f"r = {r}", [1e-3 * (1 - float(Fraction(r))), 1e-9])
 
 
-def _function(name: str, judge: Callable[..., Iterator[Trial]], places: Any, route: str, left_out: str) -> Function:
-    return Function(name, {place: partial(judge, place) for place in places}, route, left_out)
+# Chatter limits, thresholds and grown curves.
+
+FEW = 5  # each reference value takes 0.1 s or more
+START = Launch("linear", tau=0.9, v=0.005)
+GAMMA, END = Launch("linear", tau=0.9, restitution=0.5), 1.5 * np.pi / 2.8
+NEAR: dict[str, tuple[float, Callable[[Launch, float], Launch]]] = {
+    "v -> 0": (14, lambda at, off: replace(at, v=off)),
+    "omega -> 1": (12, lambda at, off: replace(at, omega=1 + off, tau=2.5)),
+    "r -> 0": (12, lambda at, off: replace(at, restitution=off)),
+    "r -> 1": (2, lambda at, off: replace(at, restitution=1 - off, v=0.01 * off)),
+    "a -> 0": (4, lambda at, off: replace(at, tau=0.5609986881410345 + off, v=off**2 / 20)),
+    "a' -> 0": (4, lambda at, off: replace(at, clearance=1 - off, tau=1.2 * off**0.5, v=off**1.5 / 50)),
+    "huge tau": (12, lambda at, off: replace(at, tau=0.9 + 1 / off, v=1e-6)),
+}
+
+
+def _states(place: str, points: int) -> Iterator[Launch]:
+    last, moved = NEAR[place]
+    for off in powers(min(points, FEW), last):
+        yield moved(START, off)
+
+
+def _chatter_limit(name: str, points: int) -> Iterator[Trial]:
+    """tau_inf; the state and every phase until then are rounded relative to tau_inf itself."""
+    for at in _states(name, points):
+        osc = at.model
+        flown, true = osc.chatter_limit(at.tau, at.v), osc.chatter_limit(at.tau, at.v, digits=DIGITS)
+        status = int(flown.status), int(true.status)
+        if status[0] != status[1] or true.status != Status.complete:
+            yield Trial(str(at), status=status)
+            continue
+        limit = partial(lambda osc, tau, v: float(osc.chatter_limit(tau, v).tau), osc)
+        kappa = condition(limit, at.tau, at.v, 1e-4)
+        yield Trial(str(at), [float(flown.tau)], [true.tau], [(kappa - 1) * abs(true.tau)], status)
+
+
+ALONG_GAMMA: dict[str, tuple[float, Callable[[Launch, float], Launch]]] = {
+    "omega -> 1": NEAR["omega -> 1"],
+    "r -> 0": (3, lambda at, off: replace(at, restitution=off)),
+    "r -> 1": (1.2, lambda at, off: replace(at, restitution=1 - off, tau=1.6)),
+    "a -> 0": (4, lambda at, off: replace(at, tau=END - off)),
+}
+
+
+def _threshold(place: str, points: int) -> Iterator[Trial]:
+    last, near = ALONG_GAMMA[place]
+    for off in powers(min(points, 3), last):
+        slow = near(GAMMA, off)
+        osc = slow.model
+        found, true = threshold(osc, slow.tau), threshold(osc, slow.tau, digits=20)
+        status = int(found.status), int(true.status)
+        speed = partial(lambda osc, tau, _: float(threshold(osc, tau).v), osc)
+        kappa = condition(speed, slow.tau, 1.0, 1e-7)
+        yield Trial(str(slow), [float(found.v)], [true.v], [(kappa - 1) * true.v], status)
+
+
+RATES = {"r -> 0": 1e-3, "r -> 1": 0.9}  # of curves, which cost many flights
+
+
+def _gamma_grown(name: str, points: int) -> Iterator[Trial]:
+    """Vertices beside the threshold over the same phase."""
+    rate = RATES.get(name, 0.5)
+    osc = linear("2.8", 0, rate)
+    points_of = np.vstack([curve.points for curve in grown_gamma(osc, Window((0.6, 2.0), (0.0, 1.0)))])
+    far = END - points_of[:, 0]
+    for off in powers(min(points, 2), 3 if name == "a -> 0" else 1, 0.3):
+        tau, v = points_of[int(np.argmin(np.abs(far - off) + (far < off / 2)))].tolist()
+        true = threshold(osc, tau, digits=20)
+        kappa = condition(lambda at, _: float(threshold(osc, at).v), tau, 1.0, 1e-7)
+        yield Trial(f"r = {rate}, tau = {tau!r}", [v], [true.v], [(kappa - 1) * true.v])
+
+
+def _stable_manifold(name: str, points: int) -> Iterator[Trial]:
+    """Chatter from a vertex ends at the foot, within the error that the condition number allows."""
+    rate, foot = RATES.get(name, 0.5), END - 1e-3 if name == "a -> 0" else 1.0
+    osc = linear("2.8", 0, rate)
+    vertices = np.vstack([curve.points for curve in stable_manifold(osc, Window((0.2, 1.5), (0.0, 1.0)), foot)])
+    for index in np.linspace(2, len(vertices) - 2, min(points, 6)).astype(int).tolist():
+        tau, v = vertices[index].tolist()
+        if not v > 0:
+            continue
+        end = osc.chatter_limit(tau, v, digits=DIGITS)
+        if end.status != Status.complete:
+            continue
+        kappa = condition(lambda at, speed: float(osc.chatter_limit(at, speed).tau), tau, v)
+        yield Trial(f"r = {rate}, tau = {tau!r}, v = {v!r}", [float(end.tau)], [foot], [kappa - 1])
 
 
 SAME = "the cut series in 60 digits, exact coefficients"
 WITHOUT = "a function of sigma, t and jets: no omega, no r; v at the place is what vanishes there; it is near 0 only"
+BALLS = "digits=, in balls"
 FUNCTIONS = (
+    Function.at(
+        NEAR, "chatter_limit", _chatter_limit, BALLS, "flights get short: P, Z and long flights are no chatter"
+    ),
+    Function.at(
+        ALONG_GAMMA,
+        "threshold",
+        _threshold,
+        BALLS,
+        "v is the answer; r up to 0.94, beyond which its enclosure takes minutes",
+    ),
+    Function.at(
+        ("a -> 0", *RATES), "gamma grown", _gamma_grown, BALLS, "v is the answer; the curve has no flights of its own"
+    ),
+    Function.at(("v -> 0", "a -> 0", *RATES), "stable manifold", _stable_manifold, BALLS, "a curve over one foot"),
     *(
-        Function(
-            f"v_c_on_arrays{', compensated' if twice else ''}",
-            {place: partial(_on_arrays, place, twice) for place in PLACES},
-            SAME,
-            WITHOUT,
+        Function.at(
+            PLACES, f"v_c_on_arrays{', compensated' if twice else ''}", partial(_on_arrays, twice), SAME, WITHOUT
         )
         for twice in (False, True)
     ),
-    _function("emitted numpy", _emitted_numpy, PLACES, "the same text on 60 digits", WITHOUT),
-    _function(
+    Function.at(PLACES, "emitted numpy", _emitted_numpy, "the same text on 60 digits", WITHOUT),
+    Function.at(
+        ("r -> 0", "r -> 1", "a -> 0", "a' -> 0"),
         "gamma, a series",
         _gamma,
-        ("r -> 0", "r -> 1", "a -> 0", "a' -> 0"),
         "digits=60",
         "a function of sigma and jets near the tangency",
     ),
-    _function(
+    Function.at(
+        ("v -> 0", "r -> 0", "r -> 1", "a -> 0"),
         "chatter_limit, a series",
         _completion,
-        ("v -> 0", "r -> 0", "r -> 1", "a -> 0"),
         "digits=60",
         "a function of v at a regular point",
     ),

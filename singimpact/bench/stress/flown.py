@@ -6,6 +6,7 @@ from functools import lru_cache, partial
 from math import pi
 from typing import Any
 
+import flint
 import numpy as np
 
 from singimpact.algebra.precision import balls_at
@@ -37,8 +38,6 @@ def landed(launch: SteepLaunch, tau: Any, v: Any, sign: int) -> tuple[Any, Any, 
     ----------
     tau, v : numbers or balls, of which the midpoints are flown. sign : -1 for the flight backwards.
     """
-    import flint
-
     start = [flint.arb(flint.arb(number).mid()) for number in (tau, v)]
     time, velocity = _flown(launch, *map(_key, start), sign)
     if time is None:
@@ -64,8 +63,6 @@ def _key(exact: Any) -> Pair:
 
 @lru_cache(maxsize=4096)  # the functions of a place fly the same states
 def _flown(launch: SteepLaunch, tau: Pair, v: Pair, sign: int) -> Pair:
-    import flint
-
     model = launch.model if sign > 0 else backwards(launch.model)
     state = [flint.arb(mantissa) * flint.arb(2) ** exponent for mantissa, exponent in (tau, v)]
     with balls_at(launch.bits):
@@ -142,8 +139,6 @@ def _first_hit(launch: Launch) -> Trial:
 
 
 def _stepped(launch: Launch, step: Any) -> Trial:
-    import flint
-
     true = landing(launch, launch.tau, launch.v)
     if isinstance(true, int) or step.status != Status.hit:
         return Trial(str(launch), status=_status(step.status, true if isinstance(true, int) else int(Status.hit)))
@@ -153,8 +148,6 @@ def _stepped(launch: Launch, step: Any) -> Trial:
 
 
 def _inverse(launch: Launch) -> Trial:
-    import flint
-
     landed = launch.v * launch.restitution  # so that r -> 0 does not send the flight to infinity
     before = launch.model.inverse_map(launch.tau, landed, horizon=launch.horizon)
     true = landing(launch, -launch.tau, flint.arb(landed) / flint.arb(launch.restitution), -1)
@@ -167,8 +160,6 @@ def _inverse(launch: Launch) -> Trial:
 
 def _flight(launch: Launch) -> Trial | None:
     """Times soon after the launch, halfway to the hit, and just before it."""
-    import flint
-
     true = landing(launch, launch.tau, launch.v)
     if isinstance(true, int) or launch.v < SQUARED:
         return None
@@ -189,8 +180,6 @@ def _derivative(launch: Launch) -> Trial | None:
 
     A short flight has d v'/d tau of the size of its square: that entry is right beside the others of its row.
     """
-    import flint
-
     if launch.v < SQUARED:
         return None
     computed, true = launch.model.derivative(launch.tau, launch.v, horizon=launch.horizon), _matrix(launch, 0, 0)
@@ -215,8 +204,6 @@ def _derivative(launch: Launch) -> Trial | None:
 
 
 def _matrix(launch: Launch, by_tau: Any, by_v: Any) -> tuple[list[Any], Any] | int:
-    import flint
-
     true = landing(launch, flint.arb(launch.tau) + by_tau, flint.arb(launch.v) + by_v)
     if isinstance(true, int):
         return true
@@ -238,8 +225,6 @@ def _iterate(launch: Launch) -> Trial | None:
 
 def _chained(launch: Launch, tau: Any, v: Any) -> Trial | None:
     """The state after IMPACTS impacts; each adds a rounding of its own, carried on by those that follow."""
-    import flint
-
     r, at = flint.arb(launch.restitution), (flint.arb(launch.tau), flint.arb(launch.v))
     rounded: tuple[Any, Any] = (abs(at[0]), abs(at[1]))
     for _ in range(IMPACTS):

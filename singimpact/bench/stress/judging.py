@@ -5,10 +5,15 @@
 The right status is 0 units, a wrong one inf.  Nothing is forgiven besides: no least error is always allowed.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from math import inf
 from typing import Any
+
+import mpmath
 
 from singimpact.algebra.numbers import EPSILON
 
@@ -63,8 +68,6 @@ class Trial:
 
 
 def _units(found: Any, truth: Any, moved: Any) -> float:
-    import mpmath
-
     with mpmath.workdps(DIGITS + LIMITS.spare):
         value, error = number(truth), abs(mpmath.mpf(found) - number(truth))
         allowed = (abs(value) + number(moved)) * mpmath.mpf(EPSILON)
@@ -75,8 +78,6 @@ def _units(found: Any, truth: Any, moved: Any) -> float:
 
 def number(value: Any) -> Any:
     """A ball's middle, a certified value or text as an mpmath number at the working precision."""
-    import mpmath
-
     if hasattr(value, "mid"):
         mantissa, exponent = value.mid().man_exp()
         return mpmath.mpf(int(mantissa)) * mpmath.power(2, int(exponent))
@@ -98,8 +99,6 @@ def moved(function: Callable[..., Any], inputs: Sequence[Any], sizes: Sequence[A
     >>> float(values[0]), round(float(rounding[0]), 12)
     (8.0, 24.0)
     """
-    import mpmath
-
     with mpmath.workdps(DIGITS + LIMITS.spare):
         exact = [number(value) for value in inputs]
         values = function(*exact)
@@ -133,6 +132,13 @@ class Function:
     sweeps: dict[str, Sweep]
     route: str
     left_out: str
+
+    @classmethod
+    def at(
+        cls, places: Iterable[str], name: str, judge: Callable[[str, int], Iterator[Trial]], route: str, left_out: str
+    ) -> Function:
+        """A function whose sweeps are one function of the place and the number of points."""
+        return cls(name, {place: partial(judge, place) for place in places}, route, left_out)
 
 
 @dataclass(frozen=True)

@@ -41,7 +41,7 @@ class Launch:
             return linear(self.omega, self.clearance, self.restitution)
         return ImpactOscillator(CUBIC, "cos(omega*t)", self.clearance, self.restitution, {"omega": self.omega})
 
-    def motion(self, tau: Any, v: Any, sign: int = 1) -> Any:
+    def motion(self, tau: Any, v: Any, sign: int = 1) -> Linear | Cubic:
         """The flight from another state, in balls; sign -1: backwards."""
         if self.family == "linear":
             return Linear(self.omega, self.clearance, tau, v)

@@ -5,6 +5,7 @@ from dataclasses import fields
 from functools import partial
 from typing import Any
 
+import mpmath
 import numpy as np
 
 from singimpact.bench.stress.judging import Function, Trial, moved, powers
@@ -27,8 +28,6 @@ def _acceleration(place: str, points: int) -> Iterator[Trial]:
 
 
 def _derivatives(launch: Launch, tau: Any) -> list[Any]:
-    import mpmath
-
     w, c = mpmath.mpf(launch.omega), mpmath.mpf(launch.clearance)
     pull = c if launch.family == "linear" else c + 3 * c**3 / 10
     cosine, sine = mpmath.cos(w * tau), mpmath.sin(w * tau)
@@ -36,8 +35,6 @@ def _derivatives(launch: Launch, tau: Any) -> list[Any]:
 
 
 def _tangency_points(name: str, points: int) -> Iterator[Trial]:
-    import mpmath
-
     for off in powers(points, 13):
         for family, clearance in (("linear", 1 - off), ("linear", off - 1), ("cubic", 0.8 - off)):
             launch = Launch(
@@ -54,8 +51,6 @@ def _tangency_points(name: str, points: int) -> Iterator[Trial]:
 
 def _swan_points(_: str, points: int) -> Iterator[Trial]:
     """c_0 + k c_0^3 = 1 at tau = 0, and -1 at pi/omega."""
-    import mpmath
-
     for off in powers(points, 13):
         for omega in (1 + off, 1 - off):
             swans = swan_points("x + k*x**3", "cos(omega*t)", {"k": off, "omega": omega})
@@ -70,8 +65,6 @@ def _swan_points(_: str, points: int) -> Iterator[Trial]:
 
 
 def _fixed_points(at: str, place: str, points: int) -> Iterator[Trial]:
-    import mpmath
-
     for off in powers(points, 15):
         r = off if place == "r -> 0" else 1 - off
         found = getattr(fixed_points, at)(r)
@@ -83,8 +76,6 @@ def _fixed_points(at: str, place: str, points: int) -> Iterator[Trial]:
 
 def _numbers(at: str, r: Any) -> list[Any]:
     """In the order of the fields, from the roots that mpmath finds of the paper's polynomials in lambda."""
-    import mpmath
-
     j = 1 if at == "tangency" else 2
     p = [mpmath.mpf(j + 1 - i) for i in range(j + 1)]  # of P, constant term first; Q is its reversal
     coefficients = [*reversed(p), *(mpmath.mpf(0) for _ in range(j + 1))]
@@ -105,8 +96,6 @@ def _numbers(at: str, r: Any) -> list[Any]:
 
 def _swan_configuration(_: str, points: int) -> Iterator[Trial]:
     """A to E of x'' = 12 kappa (t^2 - 1), which are algebraic."""
-    import mpmath
-
     with mpmath.workdps(60):
         truth = [mpmath.mpf(str(part.evalf(60))) for name in "ABCDE" for part in getattr(unfolding, name)]
     for kappa in [-1.0, *(-off for off in powers(max(points // 4, 2), 6))]:
@@ -186,7 +175,6 @@ def _told(launch: Launch, vertex: list[float]) -> str:
 
 def _solved(omega: Any, c: Any, place: Callable[[Any], tuple[Any, Any]], near: float) -> Any:
     """The value beside a double whose place is on Z."""
-    import mpmath
 
     def height(value: Any) -> Any:
         tau, t = place(value)
@@ -197,8 +185,6 @@ def _solved(omega: Any, c: Any, place: Callable[[Any], tuple[Any, Any]], near: f
 
 def _slope(launch: Launch, vertex: list[float], which: int) -> float:
     """dy/dtau or dy/dt, y = (x - c)/t^2."""
-    import mpmath
-
     with mpmath.workdps(60):
         c, omega = mpmath.mpf(launch.clearance), mpmath.mpf(launch.omega)
         point = [mpmath.mpf(value) for value in vertex]
@@ -212,8 +198,6 @@ def _slope(launch: Launch, vertex: list[float], which: int) -> float:
 
 def _flight(omega: Any, c: Any, tau: Any, t: Any) -> tuple[Any, Any]:
     """x - c and x' at t after rest at tau, of x'' + x = cos(omega t)."""
-    import mpmath
-
     size = 1 / (1 - omega**2)
     start, rate = c - size * mpmath.cos(omega * tau), omega * size * mpmath.sin(omega * tau)
     at = omega * (tau + t)
@@ -226,39 +210,44 @@ CLOSED_FORM, ALONE = (
     "curves of a model: no launch velocity, no r; v of the outline at the flight's end",
 )
 FUNCTIONS = (
-    Function(
+    Function.at(
+        ("omega -> 1", "a -> 0", "a' -> 0", "huge tau"),
         "acceleration",
-        {place: partial(_acceleration, place) for place in ("omega -> 1", "a -> 0", "a' -> 0", "huge tau")},
+        _acceleration,
         FORMULA,
         "takes tau alone: no v, no flight, no r",
     ),
-    Function(
+    Function.at(
+        ("omega -> 1", "a' -> 0"),
         "tangency_points",
-        {place: partial(_tangency_points, place) for place in ("omega -> 1", "a' -> 0")},
+        _tangency_points,
         FORMULA,
         "takes a model alone: no state, no flight, no r",
     ),
-    Function(
+    Function.at(
+        ("omega -> 1",),
         "swan_points",
-        {"omega -> 1": partial(_swan_points, "omega -> 1")},
+        _swan_points,
         FORMULA,
         "a' = 0 there always; takes f and g alone: no state, no flight, no r",
     ),
     *(
-        Function(
+        Function.at(
+            ("r -> 0", "r -> 1"),
             f"fixed_points.{at}",
-            {place: partial(_fixed_points, at, place) for place in ("r -> 0", "r -> 1")},
+            partial(_fixed_points, at),
             "roots by mpmath",
             "takes r alone",
         )
         for at in ("tangency", "swan")
     ),
-    Function(
+    Function.at(
+        ("a' -> 0",),
         "swan_configuration",
-        {"a' -> 0": partial(_swan_configuration, "a' -> 0")},
+        _swan_configuration,
         "closed form of section 6",
         "points of one model: no state, no r",
     ),
-    Function("zero_set", {place: partial(_judged, False, place) for place in NEAR}, CLOSED_FORM, ALONE),
-    Function("outline", {place: partial(_judged, True, place) for place in NEAR}, CLOSED_FORM, ALONE),
+    Function.at(NEAR, "zero_set", partial(_judged, False), CLOSED_FORM, ALONE),
+    Function.at(NEAR, "outline", partial(_judged, True), CLOSED_FORM, ALONE),
 )

@@ -7,13 +7,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from typing import Any
 
-from singimpact.bench.stress import chattered, closed_forms, expanded, flown, named
+from singimpact.bench.stress import closed_forms, expanded, flown, named
 from singimpact.bench.stress.judging import LIMITS, Cell, Function, worst
 from singimpact.bench.stress.launches import PLACES
 from singimpact.inputs import require_known, unknown
 
 FUNCTIONS: dict[str, Function] = {
-    each.name: each for room in (flown, closed_forms, chattered, expanded, named) for each in room.FUNCTIONS
+    each.name: each for room in (flown, closed_forms, expanded, named) for each in room.FUNCTIONS
 }
 POINTS, QUICK = 12, 4
 NOTE = (
@@ -53,13 +53,11 @@ def table(cells: Sequence[Cell]) -> tuple[list[str], list[list[str]]]:
     places = [place for place in PLACES if any(cell.place == place for cell in cells)]
     rows = []
     for name in dict.fromkeys(cell.function for cell in cells):
-        known = {cell.place: cell for cell in cells if cell.function == name}
-        rows.append([name, *(_shown(known.get(place)) for place in places)])
+        shown = {
+            cell.place: f"{cell.units:.2g}{' !' if cell.failed else ''}" for cell in cells if cell.function == name
+        }
+        rows.append([name, *(shown.get(place, "-") for place in places)])
     return ["function", *places], rows
-
-
-def _shown(cell: Cell | None) -> str:
-    return "-" if cell is None else f"{cell.units:.2g}{' !' if cell.failed else ''}"
 
 
 def worst_states(cells: Sequence[Cell]) -> tuple[list[str], list[list[str]]]:

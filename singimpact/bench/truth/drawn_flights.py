@@ -10,6 +10,8 @@ from collections.abc import Callable, Sequence
 from math import log2, pi
 from typing import Any
 
+import flint
+
 from singimpact.algebra.precision import balls_at
 from singimpact.bench.drawn import CLEARANCES, OMEGAS, States
 from singimpact.bench.truth.first_hit import Cubic, Linear, first_hit
@@ -81,8 +83,6 @@ def _hit(states: States, tau: Any, v: Any) -> tuple[Any, Any, Any]:
 
 
 def _ball(value: Any) -> Any:
-    import flint
-
     return flint.arb(value)
 
 

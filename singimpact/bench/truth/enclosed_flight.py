@@ -13,6 +13,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+from flint import acb, arb, arb_mat, arb_poly, arb_series
+
 from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.precision import balls_at, series_of_any_length
 from singimpact.bench.truth.programs import Program
@@ -41,8 +43,6 @@ def first_root(polynomial: Any, bounds: tuple[Any, Any], length: Any, bits: int)
     -----
     Existence is a change of sign where the slope is negative. Newton's method only narrows what is already shown.
     """
-    from flint import arb
-
     derivative, error, slope_error = polynomial.derivative(), arb(0, bounds[0]), arb(0, bounds[1])
 
     def value(s: Any) -> Any:
@@ -82,8 +82,6 @@ def first_root(polynomial: Any, bounds: tuple[Any, Any], length: Any, bits: int)
 
 def _narrowed(piece: Any, value: Any, slope: Any) -> Any:
     """A smaller ball with the one root of a piece."""
-    from flint import arb
-
     for _ in range(100):
         middle = arb(piece.mid())
         smaller = piece.intersection(middle - value(middle) / slope(piece))
@@ -201,8 +199,6 @@ def _equation(osc: Oscillator) -> Equation:
 
 def _flown(equation: Equation, state: tuple[Any, Any], horizon: float, bits: int) -> Enclosed:
     """One flight at a precision."""
-    from flint import arb, arb_poly
-
     launch, speed, clearance = arb(state[0]), arb(state[1]), equation.clearance
     x, p = _centre(clearance, arb(0))
     u, q, s, radius = speed, arb(0), arb(0), arb(8)
@@ -241,21 +237,15 @@ def _flown(equation: Equation, state: tuple[Any, Any], horizon: float, bits: int
 
 def _centre(ball: Any, bound: Any) -> tuple[Any, Any]:
     """The midpoint of a ball, and the bound with the ball's radius."""
-    from flint import arb
-
     return arb(ball.mid()), _upper(bound + ball.rad())
 
 
 def _upper(ball: Any) -> Any:
     """An exact upper bound of |ball|."""
-    from flint import arb
-
     return arb(abs(ball).upper())
 
 
 def _plain(ball: Any) -> Any:
-    from flint import arb
-
     return arb(float(ball.mid()))
 
 
@@ -265,8 +255,6 @@ def taylor(equation: Equation, t: Any, x: Any, u: Any, degree: int) -> list[Any]
     The residual of the polynomial is known from one evaluation over series; the linear equation of the correction,
     e'' + (df/dx') e' + (df/dx) e = residual, is solved for the new terms one by one.
     """
-    from flint import arb, arb_series
-
     (driven,) = equation.forcing.run({"t": arb_series([t, 1], prec=degree)})
     g, X = _listed(driven, degree), [x, u]
     while len(X) <= degree:
@@ -289,8 +277,6 @@ def taylor(equation: Equation, t: Any, x: Any, u: Any, degree: int) -> list[Any]
 
 def _listed(series: Any, count: int) -> list[Any]:
     """The first coefficients of a series, or of a constant."""
-    from flint import arb, arb_series
-
     if not isinstance(series, arb_series):
         return [arb(series)] + [arb(0)] * (count - 1)
     found = series.coeffs()[:count]
@@ -301,8 +287,6 @@ def _widest_disc(
     equation: Equation, t: Any, X: list[Any], radius: Any, bits: int, size: float
 ) -> tuple[tuple[Any, Any], Any]:
     """(M, step length) on the disc that allows the longest step, and its radius."""
-    from flint import arb
-
     degree, best, R = len(X) - 1, None, float(radius.mid())
     target = 2.0**-bits * min(size, 1.0) * degree
     with balls_at(64):
@@ -323,8 +307,6 @@ def _widest_disc(
 
 def _sums(X: list[Any]) -> tuple[Any, Any, Any]:
     """Polynomials that bound |P - P(0)|, |P' - P'(0)| and |P''| on a disc, by its radius."""
-    from flint import arb_poly
-
     first = arb_poly([0, *[_upper(part) for part in X[1:]]])
     second = first.derivative()
     return first, second - arb_poly([second[0]]), second.derivative()
@@ -332,7 +314,6 @@ def _sums(X: list[Any]) -> tuple[Any, Any, Any]:
 
 def _defect(equation: Equation, t: Any, X: list[Any], sums: tuple[Any, Any, Any], R: Any) -> Any:
     """A bound of |P'' + f(P, P') - g| on the disc, or None where f or g is not shown analytic there."""
-    from flint import acb, arb
 
     def box(centre: Any, width: Any) -> Any:
         return acb(centre + arb(0, _upper(width)), arb(0, _upper(width)))
@@ -346,8 +327,6 @@ def _bounded(
     equation: Equation, t: Any, X: list[Any], start: tuple[Any, Any], disc: tuple[Any, Any], length: Any, bits: int
 ) -> Step:
     """The step of at most a length on which the bounds p and q are shown to hold."""
-    from flint import arb, arb_mat
-
     (M, R), slack, degree = disc, arb(2) ** (-bits // 2), len(X) - 1
     with balls_at(64):
         sums = _sums(X)

@@ -3,10 +3,12 @@
 from math import hypot, sqrt
 from typing import Any
 
+import flint
+
 from singimpact.algebra.precision import bits_of_balls
 
 
-def first_hit(motion: Any, v: float, horizon: float) -> tuple[Any, Any] | None:
+def first_hit(motion: "Linear | Cubic", v: float, horizon: float) -> tuple[Any, Any] | None:
     """Time and velocity of the first hit; None when there is none before the horizon.
 
     Parameters
@@ -44,7 +46,7 @@ def first_hit(motion: Any, v: float, horizon: float) -> tuple[Any, Any] | None:
     return None
 
 
-def _without_root(v: float, a: float, motion: Any) -> float:
+def _without_root(v: float, a: float, motion: "Linear | Cubic") -> float:
     """A time before which v t + a t^2/2 - M t^3/6 is positive; M bounds |x'''| there."""
     third: float = motion.third(0.0, v, 0.25) * (1 + 1e-9)
     if a > 0:
@@ -59,10 +61,8 @@ def _lowest(z: float, u: float, e: float, half: float) -> float:
     return min(ends, z - u * u / (2 * e)) if e > 0 and abs(u) < e * half else ends
 
 
-def _root(motion: Any, low: float, high: float) -> tuple[Any, Any]:
+def _root(motion: "Linear | Cubic", low: float, high: float) -> tuple[Any, Any]:
     """The root between two times, where x' < 0: bisected to where Newton's method converges, then to all digits."""
-    import flint
-
     for _ in range(20):
         middle = (low + high) / 2
         low, high = (middle, high) if motion.at(middle)[0] > 0 else (low, middle)
@@ -95,8 +95,6 @@ class Linear:
     """
 
     def __init__(self, omega: float, clearance: float, tau: float, v: float) -> None:
-        import flint
-
         arb = flint.arb
         self.omega, self.c, self.v = arb(omega), arb(clearance), arb(v)
         self.sin, self.cos = (self.omega * arb(tau)).sin_cos()
@@ -104,8 +102,6 @@ class Linear:
 
     def at(self, t: Any) -> tuple[Any, Any, Any]:
         """x - c, x', x'' at a time after the launch."""
-        import flint
-
         t = flint.arb(t)
         sin_p, cos_p = (self.p * t).sin_cos()
         sin_q, cos_q = (self.q * t).sin_cos()
@@ -124,8 +120,6 @@ class Linear:
 
     def variations(self, t: Any) -> tuple[tuple[Any, Any], tuple[Any, Any]]:
         """Derivatives of (x, x') at t by tau and by v."""
-        import flint
-
         # by tau only the force moves: the same motion from rest at c = 0, with the force's derivative
         turned = Linear.__new__(Linear)
         vars(turned).update(vars(self))
@@ -150,8 +144,6 @@ class Cubic:
     order = 72
 
     def __init__(self, omega: float, clearance: float, tau: Any, v: Any, sign: int = 1) -> None:
-        import flint
-
         arb = flint.arb
         self.omega, self.c, self.start = arb(omega), arb(clearance), (arb(tau), arb(v))
         self.damping, self.cubic, self.sign = arb(sign) / 10, arb(3) / 10, sign
@@ -174,8 +166,6 @@ class Cubic:
 
     def at(self, t: Any) -> tuple[Any, Any, Any]:
         """x - c, x', x'' at a time after the launch."""
-        import flint
-
         t = flint.arb(t)
         while not t <= self.steps[-1][1]:
             begin, end, X = self.steps[-1]
@@ -193,8 +183,6 @@ class Cubic:
 
     def variations(self, t: Any) -> tuple[tuple[Any, Any], tuple[Any, Any]]:
         """Derivatives of (x, x') at t by tau and by v, as differences that 60 digits carry."""
-        import flint
-
         small = flint.arb(10) ** -25
         z, u, _ = self.at(t)
         rows = []

@@ -14,6 +14,7 @@ from math import floor, inf, isfinite, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
+from scipy.integrate._ivp import dop853_coefficients as table
 
 Array = np.ndarray[Any, Any]
 Acceleration = Callable[[float, float, float, Sequence[float]], float]
@@ -110,7 +111,6 @@ def _agree(one: tuple[int, float, float, float], other: tuple[int, float, float,
 def compiled_kernel() -> dict[str, Any]:
     """The functions of KERNEL compiled by numba, callees first, with the nodes of DOP853 as constants."""
     import numba
-    from scipy.integrate._ivp import dop853_coefficients as table
 
     space, count = dict(globals()), table.N_STAGES
     space.update(A=np.ascontiguousarray(table.A[:count, :count]), B=table.B.copy(), C=table.C[:count].copy())

@@ -11,6 +11,7 @@ from math import inf, isfinite, nan
 from typing import Any, NamedTuple
 
 import numpy as np
+from scipy.integrate import solve_ivp
 
 from singimpact.algebra.numbers import Array, as_float
 from singimpact.bench.truth import graded_steps, plain_steps
@@ -238,8 +239,6 @@ class PlainOrbits:
 
     def lifted(self, tau: float, horizon: float | None = None) -> Impact:
         """The first impact of a mass that lifts off from rest, by scipy's DOP853 with dense output."""
-        from scipy.integrate import solve_ivp
-
         p, c = self.motion.parameters, self.motion.clearance
 
         def slopes(s: float, y: Any) -> Any:

@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
+import flint
+
 from singimpact.algebra.expressions import Expression, evaluate
 
 Operation = tuple[str, tuple[Any, ...]]
@@ -58,8 +60,6 @@ class Program:
 
 def call(function: str, z: Any) -> Any:
     """sin, cos, tan, exp, log, sqrt, atan or tanh of a ball, a complex box or a series of balls."""
-    import flint
-
     if function in ("log", "sqrt"):
         z = _off_the_cut(z)
     if isinstance(z, flint.acb) and function == "atan" and not (abs(z.imag) < 1 or z.real > 0 or z.real < 0):
@@ -87,15 +87,11 @@ def power(base: Any, exponent: Fraction) -> Any:
 
 def _off_the_cut(z: Any) -> Any:
     """The box itself, or nan unless it is proved to have Re > 0, because flint's log is finite across its cut."""
-    import flint
-
     return flint.acb(flint.arb.nan()) if isinstance(z, flint.acb) and not z.real > 0 else z
 
 
 def _number(value: Fraction | None) -> Any:
     """A rational at the working precision; None stands for pi."""
-    import flint
-
     return flint.arb.pi() if value is None else flint.arb(flint.fmpq(value.numerator, value.denominator))
 
 

@@ -196,3 +196,82 @@ def rate_of_determinant(total: Any, change: Any) -> Any:
         - change[0, 1] * total[1, 0]
         - total[0, 1] * change[1, 0]
     )
+
+
+# ---- two orbits meet; orbits of twice the period leave the branch; an invariant torus begins
+
+
+class Fold(MultiplierKind):
+    """Saddle-node bifurcation: a multiplier is 1.
+
+    Its test is the component of the tangent by the parameter; on a curve, and in a proof, 1 - t + d.
+    """
+
+    name = "fold"
+    word = "fold (saddle-node bifurcation)"
+    marker = "o"
+    look = CurveLook("blue", "solid", 2.8)
+    may_meet = True
+    multiplier = 1.0
+    proof = "the orbits form one curve, on which the parameter turns back once: a multiplier is 1"
+
+    def test(self, state: OrbitState) -> float:
+        """The last component of the tangent."""
+        return float(state.tangent[-1])
+
+    def degenerate(self, state: OrbitState, gradient: Any) -> dict[str, float]:
+        """A cusp, a doubling at the fold, an impact that grazes."""
+        size = 2 * state.closing.n
+        # at a fold the conditions have a null vector; at a cusp it is tangent to the curve of folds (Kuznetsov, ch. 8)
+        vector = np.linalg.svd(state.loop.slope[:, :size] * state.scales[:size])[2][-1]
+        slope = gradient()[:size] * state.scales[:size]
+        turned = vector if vector[int(np.argmax(np.abs(vector)))] > 0 else -vector
+        tests = {"cusp": float(slope @ turned), "fold and doubling": state.determinant(-1.0)}
+        return tests | super().degenerate(state, gradient)
+
+
+FOLD = Fold()
+
+
+class NeimarkSacker(ReturnMapKind):
+    """Neimark-Sacker bifurcation: the product of two complex multipliers is 1.
+
+    Its test is the determinant of the return map less 1, times the last coefficient of det J(mu); in a proof 1 - d,
+    where t^2 < 4 d.
+    """
+
+    name = "torus"
+    word = "Neimark-Sacker bifurcation (torus)"
+    marker = "D"
+    conserved = True
+    proof = (
+        "the orbits form one curve, on which the product of two complex multipliers passes 1 once, at a rate that is "
+        "not 0"
+    )
+
+    def test(self, state: OrbitState) -> float:
+        """The first coefficient of det J(mu) less the last."""
+        return state.characteristic.torus
+
+    def size(self, state: OrbitState) -> float:
+        """The sum of the sizes of both coefficients."""
+        return abs(state.characteristic.zero) + abs(state.characteristic.two)
+
+    def occurs(self, loop: Loop) -> bool:
+        """Where the multipliers are complex: real ones whose product is 1 are no bifurcation."""
+        return loop.characteristic().are_complex
+
+    def of_return_map(self, total: Any) -> Any:
+        """1 - d."""
+        return 1 - total.det()
+
+    def rate_of_return_map(self, total: Any, change: Any) -> Any:
+        """Its rate."""
+        return -rate_of_determinant(total, change)
+
+    def refusal(self, total: Any) -> str:
+        """Whether the multipliers are shown to be complex."""
+        return "" if trace(total) ** 2 < 4 * total.det() else "the multipliers are not shown to be complex"
+
+
+NEIMARK_SACKER = NeimarkSacker()

@@ -1,11 +1,8 @@
 """All kinds of events of the package, in the order in which a branch looks for them."""
 
-from singimpact.branches.events.fold import FOLD
-from singimpact.branches.events.graze import GRAZE
-from singimpact.branches.events.interior_graze import INTERIOR_GRAZE
-from singimpact.branches.events.kind import EventKind
+from singimpact.branches.events.graze import GRAZE, INTERIOR_GRAZE
+from singimpact.branches.events.kind import FOLD, NEIMARK_SACKER, EventKind
 from singimpact.branches.events.meeting_branches import BRANCH_POINT, PITCHFORK, TRANSCRITICAL
-from singimpact.branches.events.neimark_sacker import NEIMARK_SACKER
 from singimpact.branches.events.onset_of_rest import ONSET_OF_REST
 from singimpact.branches.events.own_event import OwnEvent
 from singimpact.branches.events.period_doubling import PERIOD_DOUBLING

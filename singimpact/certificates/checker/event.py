@@ -18,10 +18,9 @@ from typing import Any
 
 from flint import arb
 
-from .formulas import Formula, Refused, Wrong, ball, need
+from .formulas import Formula, Refused, Wrong, ball, need, require_period
 from .motion import Model, size, within
 from .periodic_orbit import Orbits, require_shortest, return_map
-from .periods import require_period
 from .schema import CURVED, TOUCHING
 from .told import compared
 

@@ -12,18 +12,29 @@ from flint import ctx
 from .border_orbit import border_orbit
 from .chatter_limit import chatter_limit
 from .event import event
-from .first_impact import first_impact
 from .formulas import Clock, Refused, Wrong
 from .horseshoe import horseshoe
 from .invariant_arc import invariant_arc
-from .motion import Model
+from .motion import Flight, Model
 from .periodic_orbit import periodic_orbit
 from .schema import read, require_form, require_statement
-from .told import balls_of
+from .told import balls_of, compared, launched
 
 LEAST = 80  # bits, for bounds that are given with a few digits
 SECONDS, ORDINARY = 9, 640  # of CPU for a certificate of at most so many bits; more bits have more, by their square
 TERMS = 10_000  # flint cuts a series after ctx.cap terms without a word
+PARTS = ("flight_time", "velocity", "tau", "v")
+
+
+def first_impact(model: Model, content: dict[str, Any], bits: int) -> None:
+    """Check that the motion from the launch meets the wall first where and as fast as it is written."""
+    tau, v = launched(content)
+    time, velocity, _ = Flight(model, tau, v, bits).first_hit()
+    found = zip(PARTS, (time, velocity, tau + time, model.rebound(velocity)), strict=True)
+    compared({name: (each, content[name]) for name, each in found})
+
+
+# What shows each statement at so many bits.
 STATEMENTS: dict[str, Callable[[Model, dict[str, Any], int], None]] = {
     "first impact": first_impact,
     "periodic orbit": periodic_orbit,
@@ -33,7 +44,6 @@ STATEMENTS: dict[str, Callable[[Model, dict[str, Any], int], None]] = {
     "border orbit": border_orbit,
     "invariant arc": invariant_arc,
 }
-"""What shows each statement at so many bits."""
 
 
 def digest_of(content: dict[str, Any]) -> str:

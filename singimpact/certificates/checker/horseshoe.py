@@ -18,10 +18,9 @@ from typing import Any
 
 from flint import arb, arb_mat
 
-from .formulas import Formula, Refused, Wrong, ball, need
+from .formulas import Formula, Refused, Wrong, ball, need, require_period
 from .impacts import impact
 from .motion import Model, next_state, within
-from .periods import require_period
 
 PIECES = (1, 4)  # along u and along s, into which a set is cut
 COARSE = 64  # bits of the flights of a set

@@ -15,10 +15,9 @@ from typing import Any, NamedTuple
 
 from flint import arb, arb_mat
 
-from .formulas import Formula, Refused, Wrong, ball, need
+from .formulas import Formula, Refused, Wrong, ball, need, require_period
 from .impacts import by_launch, impact, touching
 from .motion import Model, next_state, size, within
-from .periods import require_period
 from .told import compared
 
 

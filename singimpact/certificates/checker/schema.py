@@ -223,6 +223,7 @@ BOX = {
     "series": [ball(), 2, 200],
     "tree": lambda value, where: text(value, where, re.compile("[Sl.]+"), 10**6),
 }
+# What the file of each statement says beside its schema, statement, model and digest.
 STATEMENTS: dict[str, Callable[[dict[str, Any]], Form]] = {
     "first impact": lambda _: {
         "launch": LAUNCH,
@@ -274,11 +275,9 @@ STATEMENTS: dict[str, Callable[[dict[str, Any]], Form]] = {
         ),
     },
 }
-"""What the file of each statement says beside its schema, statement, model and digest."""
 
 
-IN_TIME = ("first impact", "periodic orbit", "chatter limit")
-"""Statements that may be on a model in whose f t occurs."""
+IN_TIME = ("first impact", "periodic orbit", "chatter limit")  # statements that may be on a model in whose f t occurs
 
 
 def require_statement(content: Any) -> None:
@@ -298,3 +297,69 @@ def require_form(content: dict[str, Any]) -> None:
     expect(not unused, f"model has the parameter {min(unused, default='')!r}, which it does not use")
     moving = re.search(r"\bt\b", model["f"]) is not None and content["statement"] not in IN_TIME
     expect(not moving, f"f = {model['f']} depends on t: of such a model only {', '.join(IN_TIME)} are checked here")
+
+
+# The sentence of a certificate, as the programs print it: every number with its radius, a bound at its outer end.
+
+
+def with_radius(written: dict[str, str]) -> str:
+    """A number with its radius."""
+    return f"{written['value']} +- {written['radius']}"
+
+
+def below(written: dict[str, str], digits: int = 12) -> str:
+    """A decimal that is no larger than any number of a ball."""
+    least = (Fraction(written["value"]) - Fraction(written["radius"])) * 10**digits // 1
+    return f"{least // 10**digits}.{least % 10**digits:0{digits}d}"
+
+
+def sentence(content: dict[str, Any]) -> str:
+    """The statement of a certificate as a sentence."""
+    return SENTENCES[content["statement"]](content)
+
+
+def states(content: dict[str, Any]) -> str:
+    shown = ", ".join(f"({with_radius(each['tau'])}, {with_radius(each['v'])})" for each in content["states"])
+    return f"(tau, v) = {shown}"
+
+
+def launch(content: dict[str, Any]) -> str:
+    return f"({content['launch']['tau']}, {content['launch']['v']})"
+
+
+def event(content: dict[str, Any]) -> str:
+    """The impacts of an orbit that touches the wall do not count the touch."""
+    impacts = len(content["states"]) - ("unique_within" in content)
+    alone = f", alone within {content['unique_within']}" if "unique_within" in content else ""
+    number_of = f"{content['over']} = {with_radius(content['parameter'])}"
+    return f"a {content['kind']}: {number_of}, of an orbit of {impacts} impacts in {content['periods']} periods{alone}"
+
+
+def invariant_arc(content: dict[str, Any]) -> str:
+    model = content["restitution"] == "model"
+    which = f"r = {content['model']['restitution']}" if model else f"all r in {content['restitution']}"
+    return f"gamma before tau_* = {with_radius(content['tau'])}: {which}, S <= {content['reach']}"
+
+
+SENTENCES: dict[str, Callable[[dict[str, Any]], str]] = {
+    "first impact": lambda content: (
+        f"the first impact from {launch(content)}: tau = {with_radius(content['tau'])}, v = {with_radius(content['v'])}"
+    ),
+    "periodic orbit": lambda content: (
+        f"the ({len(content['states'])}, {content['periods']}) periodic orbit, alone within "
+        f"{content['unique_within']}: {states(content)}"
+    ),
+    "chatter limit": lambda content: (
+        f"the chatter limit from {launch(content)}: {content['ends']} at tau = {with_radius(content['tau'])}"
+    ),
+    "horseshoe": lambda content: (
+        f"a horseshoe: loops of {content['loops'][0]} and {content['loops'][1]} impacts, "
+        f"entropy >= {below(content['entropy'])}"
+    ),
+    "event": event,
+    "border orbit": lambda content: (
+        f"a border orbit: {content['over']} = {with_radius(content['parameter'])}, "
+        f"from tau = {content['release']} to {content['end']}, chatter completes {content['completes']}"
+    ),
+    "invariant arc": invariant_arc,
+}

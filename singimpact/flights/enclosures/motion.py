@@ -257,21 +257,21 @@ class CarriedMotion:
 
     # ---- states at hits and at times
 
-    def at_hit(self, root: Any, velocity: Any, rate: Any, place: Any = None) -> tuple[Any, Any, list[Pair]]:
+    def at_hit(self, root: Any, velocity: Any, rate: Any, level: Any = None) -> tuple[Any, Any, list[Pair]]:
         """Time since the launch, velocity, and the derivatives of both in the order tau, v, names, over the set.
 
         Parameters
         ----------
         root : the time since the step began. velocity : z' there. rate : z' there, or y' on the first step.
-        place : z there; None for 0, at the wall of the launch.
+        level : z there; None for 0, at the wall of the launch.
         """
         total = self.time + root
         if not self.by:
             return total, velocity, []
-        push = self.equation.acceleration(self.tau + total, velocity * 0 if place is None else place, velocity)
+        push = self.equation.acceleration(self.tau + total, velocity * 0 if level is None else level, velocity)
         pairs: list[Pair] = []
         for value, slope in self.by:
-            if not self.launched or place is not None:
+            if not self.launched or level is not None:
                 delay = -value(root) / rate
             elif self.coarse is not None and not pairs:
                 delay = root * 0  # the height of a launch does not deviate
@@ -283,13 +283,13 @@ class CarriedMotion:
         by = self._images(self.full, pairs)
         if self.coarse is None:
             return total, velocity, by
-        return *self._by_mean_value(root, velocity, pairs, place), by
+        return *self._by_mean_value(root, velocity, pairs, level), by
 
-    def _by_mean_value(self, root: Any, velocity: Any, pairs: list[Pair], place: Any) -> Pair:
+    def _by_mean_value(self, root: Any, velocity: Any, pairs: list[Pair], level: Any) -> Pair:
         """Time since the launch and velocity: those of the centre, which hits as every member does, and a deviation."""
         value, slope = self.own
-        if place is not None:
-            own = narrowed(root, *below(value, slope, place))
+        if level is not None:
+            own = narrowed(root, *below(value, slope, level))
             own_velocity = slope(own)
         elif self.launched:
             y, y_slope = divided(value, slope, self.removed)

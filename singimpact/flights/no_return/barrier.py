@@ -1,4 +1,6 @@
-"""Flights that strong damping keeps above the obstacle: two straight barriers in the plane of z = x - c and x'.
+"""Flights kept above the obstacle by strong damping, and launches too fast for a bounded, oscillating force.
+
+Strong damping: two straight barriers in the plane of z = x - c and x'.
 
 On x' = -lambda z the motion points upwards, and on x' = kappa (Z - z) downwards, if for all z in [0, Z] and all times
 
@@ -6,6 +8,12 @@ On x' = -lambda z the motion points upwards, and on x' = kappa (Z - z) downwards
 
 A launch with 0 < v <= kappa Z begins between them and stays there, so z >= z_0 e^(-lambda t) > 0: it never returns.
 The slopes are looked for in doubles on a grid; the inequalities are then proved in balls on pieces of [0, Z].
+
+Fast launches, of rotating pendulums: let f(x) = V'(x) with |V| bounded and g(t) = m + G'(t) with |G| bounded and m >= 0
+(constant parts of f in m).  Then y = x' - G(t) + V(x)/x' has y' = m - V x''/x'^2, so with |x''| <= B and the launch
+velocity u, as long as x' >= u/2,
+
+    x' >= u - 2 sup|G| - 4 sup|V|/u - 4 t sup|V| B/u^2 .
 """
 
 from collections.abc import Callable
@@ -17,8 +25,23 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.balls import Balls
-from singimpact.algebra.expressions import Name, add, evaluate, multiply, number, substitute, walk
-from singimpact.algebra.numbers import Array, as_float
+from singimpact.algebra.derivatives import derivative
+from singimpact.algebra.expressions import (
+    Call,
+    Expression,
+    Name,
+    Product,
+    Sum,
+    add,
+    evaluate,
+    multiply,
+    names_in,
+    negate,
+    number,
+    substitute,
+    walk,
+)
+from singimpact.algebra.numbers import Array, as_float, sign_of
 from singimpact.algebra.precision import balls_at
 from singimpact.algebra.rings import DOUBLES
 from singimpact.flights.no_return.polynomial import extremes_of_forcing, least_on_a_grid
@@ -157,3 +180,65 @@ def _on_pieces(holds: Callable[[Any], bool], balls: Balls, height: float, left: 
             middle = (low + high) / 2
             stack += [(middle, high), (low, middle)]
     return False
+
+
+# ---- fast launches
+
+MARGIN = 1e-9  # of every sum here, which is a few roundings
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """sup|V|, sup|G| and B of the bound for fast launches."""
+
+    potential: float
+    impulse: float
+    force: float
+
+
+def stays_up(osc: Oscillator, v: Array, horizon: Any) -> Array:
+    """Whether flights launched with velocities v are proved not to return before the horizon.
+
+    Examples
+    --------
+    >>> stays_up(Oscillator("sin(x)", "cos(t)", 0, 1), np.array([10.0, 100.0]), 6000.0).tolist()
+    [False, True]
+    """
+    bounds = bounds_of(osc)
+    if bounds is None:
+        return np.zeros(v.shape, dtype=bool)
+    with np.errstate(all="ignore"):
+        left = v / 2 - 2 * bounds.impulse - 4 * bounds.potential / v
+        lost = 4 * horizon * bounds.potential * bounds.force / v**2
+        return np.asarray((v > 0) & (left > lost + MARGIN * v))
+
+
+@lru_cache(maxsize=256)
+def bounds_of(osc: Oscillator) -> Bounds | None:
+    """The bounds of a model whose f and g are sums of sines and cosines; None for any other."""
+    force, forcing = _waves(osc.force(), "x"), _waves(osc.forcing(), "t")
+    if force is None or forcing is None or sign_of(add(forcing[0], negate(force[0]))) < 0:
+        return None
+    sizes = [(abs(as_float(size)), abs(as_float(rate))) for part in (force, forcing) for size, rate in part[1]]
+    count, mean = len(force[1]), abs(as_float(add(forcing[0], negate(force[0]))))
+    turned = [size / rate for size, rate in sizes]
+    return Bounds(sum(turned[:count]), sum(turned[count:]), sum(size for size, _ in sizes) + mean)
+
+
+def _waves(tree: Expression, variable: str) -> tuple[Expression, list[tuple[Expression, Expression]]] | None:
+    """A tree as a constant and waves (amplitude, rate), sin or cos of linear arguments; None for any other."""
+    constant: Expression = number(0)
+    waves = []
+    for term in tree.terms if isinstance(tree, Sum) else (tree,):
+        if not names_in(term):
+            constant = add(constant, term)
+            continue
+        factors = term.factors if isinstance(term, Product) else (term,)
+        moving = [factor for factor in factors if names_in(factor)]
+        if len(moving) != 1 or not isinstance(moving[0], Call) or moving[0].function not in ("sin", "cos"):
+            return None
+        rate = derivative(moving[0].argument, variable)
+        if names_in(rate) or names_in(moving[0].argument) != {variable} or sign_of(rate) == 0:
+            return None
+        waves.append((multiply(number(1), *(factor for factor in factors if not names_in(factor))), rate))
+    return constant, waves

@@ -22,7 +22,7 @@ from singimpact.algebra.rings import DOUBLES
 from singimpact.flights.model_numbers import turn
 from singimpact.oscillator.linear import LinearForm, at_rest
 from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.phase import reduced
+from singimpact.oscillator.period import reduced
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,6 @@
 """`Claim`: a sentence of the paper that can be checked.  `Verdict`: what its verifier found."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from math import floor, log10
 from typing import Any
@@ -129,6 +129,11 @@ def compared(
 
 
 Trials = Callable[[Any, Any], Sequence[Trial]]
+
+
+def at_each(places: Callable[[], Iterable[Any]], trial: Callable[..., Trial]) -> Trials:
+    """Trials at several places: `trial` takes a place, the printed statement and the corrected one."""
+    return lambda printed, corrected: [trial(place, printed, corrected) for place in places()]
 
 
 @dataclass(frozen=True)
@@ -260,5 +265,4 @@ class Verdict:
         return {key: data[key] for key in first} | {key: value for key, value in data.items() if key not in first}
 
 
-claim_beyond = in_section("beyond")
-"""The maker of claims beyond the paper."""
+claim_beyond = in_section("beyond")  # the maker of claims beyond the paper

@@ -8,8 +8,7 @@ from typing import Any
 from singimpact.algebra.certificates import Certificate, collected
 from singimpact.paper.claims.claim import IN_MODEL, MODULO, PROVED, STRENGTH, Check, Claim, Trial, Verdict
 from singimpact.paper.routes.equations import derived_from, watched
-from singimpact.paper.routes.scaling import limit_acceleration
-from singimpact.paper.routes.unfolding import acceleration as model_acceleration
+from singimpact.paper.routes.unfolding import acceleration as model_acceleration, limit_acceleration
 
 SCALING = "s6-scaling"  # the claim that oscillators tend to the universal model
 MODEL = {model_acceleration.label, limit_acceleration.label}  # type: ignore[attr-defined]

@@ -44,10 +44,8 @@ def _read(place: Path) -> dict[str, Entry]:
     return {line["id"]: Entry(**(line | {"rests_on": tuple(line["rests_on"])})) for line in lines}
 
 
-INDEX: dict[str, Entry] = _read(PLACE)
-"""The claims of the paper."""
-BEYOND: dict[str, Entry] = _read(BEYOND_PLACE)
-"""The claims that the paper does not have."""
+INDEX: dict[str, Entry] = _read(PLACE)  # the claims of the paper
+BEYOND: dict[str, Entry] = _read(BEYOND_PLACE)  # the claims that the paper does not have
 
 
 def entry_of(name: str) -> Entry:

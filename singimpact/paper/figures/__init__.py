@@ -4,4 +4,79 @@ Not here: what they show (`surface`, `dynamics`), what is claimed of it (`paper.
 (`scenes`).
 """
 
-from singimpact.paper.figures.registry import BEYOND as BEYOND, FIGURES as FIGURES, figure as figure, picture as picture
+from pathlib import Path
+from typing import Any
+
+from singimpact import cache
+from singimpact.handed_on import names_of
+from singimpact.inputs import checked_keywords, refuse
+from singimpact.paper.figures.panel import Dot, Line, Panel, Picture, Region
+from singimpact.scenes.layer_data import key_of
+from singimpact.store import cache_folder
+
+# Files of this room, and the figures of each: `figure_3` is in `contact_figures`.
+FILES: dict[str, tuple[int | str, ...]] = {
+    "outlines": (1, 2, 9, 10),
+    "contact_figures": (3, 4, 5, 6, 7, 8),
+    "swan_figures": (11, 12, 14, 15),
+    "unfolded_figures": (13, 16, 17),
+    "corrections": ("B1", "B2", "B3"),
+    "beyond_figures": ("B4", "B5", "B6", "B7", "B8", "B9"),
+}
+FIGURES = tuple(range(1, 18))  # the numbers of the paper's figures
+BEYOND = (*FILES["corrections"], *FILES["beyond_figures"])  # the names of figures of what the paper does not have
+
+
+ACCEPTED = f"a number from {min(FIGURES)} to {max(FIGURES)}, or {BEYOND[0]} to {BEYOND[-1]} for those beyond the paper"
+
+
+def picture(number: Any) -> Picture:
+    """The data of one of the paper's figures, or of one beyond it.
+
+    Raises
+    ------
+    InputError : neither a number from 1 to 17 nor a name of `BEYOND`.
+    """
+    number = {str(key): key for key in FIGURES}.get(number, number) if isinstance(number, str) else number
+    if isinstance(number, bool) or not isinstance(number, int | str) or number not in (*FIGURES, *BEYOND):
+        raise refuse("figure", number, ACCEPTED)
+    file = next(file for file, numbers in FILES.items() if number in numbers)
+    # loaded here, because the file loads what computes
+    data: Picture = names_of(__name__, {file: f"figure_{number}"})(f"figure_{number}")()
+    return data
+
+
+@checked_keywords
+def figure(number: Any, *, serif: bool = False, dark: bool = False) -> Any:
+    """One of the paper's figures as a matplotlib figure, at the size of a printed page; "B1" to "B9" are beyond it.
+
+    Parameters
+    ----------
+    number : from 1 to 17, or the name of a figure beyond the paper.
+    serif : letters as in a journal (STIX). dark : light lines on a dark ground.
+
+    Examples
+    --------
+    >>> len(figure(12).axes)
+    4
+    """
+    from singimpact.paper.figures.figure_rendering import drawn
+
+    return drawn(picture(number), serif, dark)
+
+
+# Figures kept in the user's cache folder as numbers, so that an interrupted run continues where it stopped.
+
+KINDS = (Picture, Panel, Line, Region, Dot)
+
+
+def kept_picture(number: int | str) -> Picture:
+    """The data of a figure as `picture` gives them, from the cache when they were computed before."""
+    place = cache_folder() / "figures" / f"{key_of(number, cache.source_digest(Path(__file__).parent))}.figure"
+    content = cache.recall(place)
+    if content is not None:
+        found: Picture = cache.unpacked(content, KINDS)
+        return found
+    made = picture(number)
+    cache.keep(place, cache.packed(made))
+    return made

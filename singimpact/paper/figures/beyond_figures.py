@@ -74,13 +74,6 @@ def figure_B4() -> Picture:
         Panel(((0.0, 1.0), (0.0, 0.52)), "$r$", r"$v/(a'(A)h^2)$", "(a) heights", plain),
         Panel(((0.0, 1.0), (-4.2, -0.2)), "$r$", r"$\log_{10}(w - w_\gamma)$", "(b) above $\\gamma$", beside),
     ]
-    caption = (
-        r"Over the line $\tau = A - h$ the loops of $W^s(X)$, the tears around which they lie and $\gamma$ "
-        r"have heights $a'(A)h^2 w$ with $w$ algebraic in $r$. Each tear lies between the two edges of its "
-        r"loop, so close to the lower one that a loop looks like a hairpin. (a) $w$; (b) its distance from "
-        r"that of $\gamma$. The dots are crossings on true orbits of the universal model and of two "
-        r"oscillators, at $h$ = 1/2000 of the half distance of $A$ and $B$."
-    )
     return Picture(
         "B4",
         "Heights of the loops next to A",
@@ -89,7 +82,13 @@ def figure_B4() -> Picture:
         panels,
         2,
         {"farthest": worst},
-        caption,
+        (
+            r"Over the line $\tau = A - h$ the loops of $W^s(X)$, the tears around which they lie and $\gamma$ "
+            r"have heights $a'(A)h^2 w$ with $w$ algebraic in $r$. Each tear lies between the two edges of its "
+            r"loop, so close to the lower one that a loop looks like a hairpin. (a) $w$; (b) its distance from "
+            r"that of $\gamma$. The dots are crossings on true orbits of the universal model and of two "
+            r"oscillators, at $h$ = 1/2000 of the half distance of $A$ and $B$."
+        ),
     )
 
 
@@ -122,22 +121,19 @@ def figure_B5() -> Picture:
         Region(band, words="3 within 2 %"),
         Region(np.vstack([tops, bottoms[::-1]]), SURFACE, words="proved bounds, for all $r$ up to 0.95"),
     ]
-    facts = {"limit": limit, "most": float(tops[:, 1].max()), "least": float(bottoms[:, 1].min())}
-    caption = (
-        r"The time $X$ at which chatter from $A$ ends in the universal negative swan, for every restitution: "
-        r"$X(1-r)^{3/7}$ stays within 2 % of 3. It is enclosed for all $r$ up to 0.95 by balls, as $X$ rises "
-        r"with $r$. The limit as $r \to 1$ is $(14u/(3\cdot 12^{2/3}))^{3/7}$, where $u = 13.919146$ is the "
-        r"adiabatic invariant of the elastic ball from $A$."
-    )
-    panel = Panel(((0.0, 1.0), (2.92, 3.08)), "$r$", r"$X\,(1-r)^{3/7}$", lines=lines, regions=regions)
     return Picture(
         "B5",
         "The foot X for every restitution",
         ("b:foot-monotone", "b:foot", "b:foot-limit"),
         "x'' = 12(1 - t^2), c = 0",
-        [panel],
-        facts=facts,
-        caption=caption,
+        [Panel(((0.0, 1.0), (2.92, 3.08)), "$r$", r"$X\,(1-r)^{3/7}$", lines=lines, regions=regions)],
+        facts={"limit": limit, "most": float(tops[:, 1].max()), "least": float(bottoms[:, 1].min())},
+        caption=(
+            r"The time $X$ at which chatter from $A$ ends in the universal negative swan, for every restitution: "
+            r"$X(1-r)^{3/7}$ stays within 2 % of 3. It is enclosed for all $r$ up to 0.95 by balls, as $X$ rises "
+            r"with $r$. The limit as $r \to 1$ is $(14u/(3\cdot 12^{2/3}))^{3/7}$, where $u = 13.919146$ is the "
+            r"adiabatic invariant of the elastic ball from $A$."
+        ),
     )
 
 
@@ -161,13 +157,6 @@ def figure_B6() -> Picture:
         Panel(((times[0], times[-1]), (-0.08 * top, top)), "$t$", "$x - c$", "(a) two periods", [whole]),
         Panel(((-1.2, 6.6), (-0.1, 1.25)), "$s$", r"$(x-c)/(|a''|H^4)$", "(b) one hop", hops),
     ]
-    caption = (
-        r"Past a negative swan one orbit is born. (a) The mass rests on the wall, is thrown at $A$, hops, "
-        r"chatters and rests again, once a period, whatever it did before: $x'' + x = \cos 2t$, $r = 4/5$, "
-        r"$c_0 = 1$. (b) One hop in lengths scaled by the half distance $H$ of $A$ and $B$, $s$ from the "
-        r"middle, for three clearances: the first arc tends to $\frac{1}{24}(s+1)^3(3-s)$, of height 9/8, and "
-        r"hits with the speed $8/3$ after the time 4."
-    )
     return Picture(
         "B6",
         "The orbit that is born at a negative swan",
@@ -176,7 +165,13 @@ def figure_B6() -> Picture:
         panels,
         2,
         facts,
-        caption,
+        (
+            r"Past a negative swan one orbit is born. (a) The mass rests on the wall, is thrown at $A$, hops, "
+            r"chatters and rests again, once a period, whatever it did before: $x'' + x = \cos 2t$, $r = 4/5$, "
+            r"$c_0 = 1$. (b) One hop in lengths scaled by the half distance $H$ of $A$ and $B$, $s$ from the "
+            r"middle, for three clearances: the first arc tends to $\frac{1}{24}(s+1)^3(3-s)$, of height 9/8, and "
+            r"hits with the speed $8/3$ after the time 4."
+        ),
     )
 
 

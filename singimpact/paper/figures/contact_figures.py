@@ -173,26 +173,24 @@ def _actions(tau: float, edges: dict[str, tuple[Array, str, str]], boxes: list[t
     panels = []
     for n, (title, y, turn) in enumerate(maps):
         images = {name: turn(points) - np.array([tau, 0.0]) for name, (points, _, _) in edges.items()}
-        lines = [
-            Line(
-                images[name],
-                pen,
-                f"image of {name}",
-                label if pen != "hidden" else "",
-                0.7 if pen == "rest" else 0.35,
-                words=WORDS.get(pen, ""),
-            )
-            for name, (_, pen, label) in edges.items()
-        ]
-        region = Region(np.vstack(list(images.values())), words="part of $V'$ and its images")
         panels.append(
             Panel(
                 boxes[n],
                 x=r"$\sigma$",
                 y=y,
                 title=title,
-                lines=lines,
-                regions=[region],
+                lines=[
+                    Line(
+                        images[name],
+                        pen,
+                        f"image of {name}",
+                        label if pen != "hidden" else "",
+                        0.7 if pen == "rest" else 0.35,
+                        words=WORDS.get(pen, ""),
+                    )
+                    for name, (_, pen, label) in edges.items()
+                ],
+                regions=[Region(np.vstack(list(images.values())), words="part of $V'$ and its images")],
                 dots=[Dot("$w_*$", (0.0, 0.0))],
             )
         )
@@ -216,12 +214,6 @@ def figure_4() -> Picture:
         (sigma, (-0.6 * v, 0.15 * v)),
         (sigma, (-0.1 * v, 0.4 * v)),
     ]
-    caption = (
-        "Near a tangency with $a' > 0$ the visible part of $V'$ lies between the axis $t = 0$ and the horizon "
-        r"$H$, where a flight lands with velocity zero. The projection $p$ folds $V'$ along $H$; $\phi$ gives the "
-        r"landing, and the rebound $R$ turns its velocity around. All panels show the same interval of $\sigma = "
-        r"\tau - \tau_*$; their vertical scales differ."
-    )
     return Picture(
         4,
         "The actions of p, phi and R at a tangency with a' > 0",
@@ -229,7 +221,12 @@ def figure_4() -> Picture:
         str(oscillator()),
         _actions(tau, edges, boxes),
         2,
-        caption=caption,
+        caption=(
+            "Near a tangency with $a' > 0$ the visible part of $V'$ lies between the axis $t = 0$ and the horizon "
+            r"$H$, where a flight lands with velocity zero. The projection $p$ folds $V'$ along $H$; $\phi$ gives the "
+            r"landing, and the rebound $R$ turns its velocity around. All panels show the same interval of $\sigma = "
+            r"\tau - \tau_*$; their vertical scales differ."
+        ),
     )
 
 
@@ -253,12 +250,6 @@ def figure_6() -> Picture:
         (sigma, (low, -0.2 * low)),
         (sigma, (0.1 * low, -0.6 * low)),
     ]
-    caption = (
-        "Near a tangency with $a' < 0$ the visible sector of $V'$ lies between the zero set $Z$ and the axis $t = "
-        r"0$. The landing map $\phi$ takes it to a thin region that touches the axis at $w_*$, so that every "
-        r"flight nearby lands to the right of $w_*$. All panels show the same interval of $\sigma = \tau - "
-        r"\tau_*$; their vertical scales differ."
-    )
     return Picture(
         6,
         "The actions of p, phi and R at a tangency with a' < 0",
@@ -266,7 +257,12 @@ def figure_6() -> Picture:
         str(oscillator()),
         _actions(tau, edges, boxes),
         2,
-        caption=caption,
+        caption=(
+            "Near a tangency with $a' < 0$ the visible sector of $V'$ lies between the zero set $Z$ and the axis $t = "
+            r"0$. The landing map $\phi$ takes it to a thin region that touches the axis at $w_*$, so that every "
+            r"flight nearby lands to the right of $w_*$. All panels show the same interval of $\sigma = \tau - "
+            r"\tau_*$; their vertical scales differ."
+        ),
     )
 
 
@@ -295,22 +291,19 @@ def figure_5() -> Picture:
     ]
     near = curve.points[(curve.points[:, 0] < tau - 0.02) & (curve.points[:, 0] > tau - 0.2)]
     below = np.interp(near[:, 0], *jump[np.argsort(jump[:, 0])].T)
-    facts = {"gamma_below_P": float((near[:, 1] / below).max()), "order": _order(near, tau)}
-    panel = Panel(((low, high), (-0.1 * v, v)), lines=lines, dots=[Dot("$w_*$", (tau, 0.0))])
-    caption = (
-        r"Near a tangency with $a' > 0$ the curve $\gamma$ ends at $w_*$ with a quadratic tangency and is the "
-        "threshold: below it each orbit stays on its stable manifold and the mass comes to rest before $w_*$; "
-        "above it the impacts pass $w_*$ or cross $P_*$, where the map is discontinuous. The grey segments join "
-        "successive impacts and are no invariant curves."
-    )
     return Picture(
         5,
         "Degenerate chatter at a tangency with a' > 0",
         ("t:t2-exists", "t:t2-sides", "s4-P-star"),
         str(model),
-        [panel],
-        facts=facts,
-        caption=caption,
+        [Panel(((low, high), (-0.1 * v, v)), lines=lines, dots=[Dot("$w_*$", (tau, 0.0))])],
+        facts={"gamma_below_P": float((near[:, 1] / below).max()), "order": _order(near, tau)},
+        caption=(
+            r"Near a tangency with $a' > 0$ the curve $\gamma$ ends at $w_*$ with a quadratic tangency and is the "
+            "threshold: below it each orbit stays on its stable manifold and the mass comes to rest before $w_*$; "
+            "above it the impacts pass $w_*$ or cross $P_*$, where the map is discontinuous. The grey segments join "
+            "successive impacts and are no invariant curves."
+        ),
         legend="upper right",
     )
 
@@ -358,7 +351,6 @@ def figure_7() -> Picture:
         Line(np.array([[start, 0.0], [tau, 0.0]]), "rest", "[w_1, w_*]", words="interval $[w_1, w_*]$ of $\\Pi_0$"),
     ]
     middle = epsilon[-30:-3]
-    facts = {"order": float(np.polyfit(np.log(middle[:, 0] - tau), np.log(middle[:, 1]), 1)[0])}
     panel = Panel(
         ((low, high), (-0.1 * v, v)),
         lines=lines,
@@ -368,20 +360,19 @@ def figure_7() -> Picture:
             Dot("$G(w_1)$", (float(epsilon[0, 0]), float(epsilon[0, 1]))),
         ],
     )
-    caption = (
-        "Near a tangency with $a' < 0$ every weak impact is followed by complete chatter, also those left of "
-        "$w_*$, where the acceleration is still positive: the stable manifolds cross above $w_*$ and return to "
-        r"the axis. The map takes the interval from $w_1$ to $w_*$ to the curve $\varepsilon$, which touches the "
-        "axis at $w_*$."
-    )
     return Picture(
         7,
         "Chatter at a tangency with a' < 0",
         ("t:foliate", "s4b-eps", "s4b-back"),
         str(model),
         [panel],
-        facts=facts,
-        caption=caption,
+        facts={"order": float(np.polyfit(np.log(middle[:, 0] - tau), np.log(middle[:, 1]), 1)[0])},
+        caption=(
+            "Near a tangency with $a' < 0$ every weak impact is followed by complete chatter, also those left of "
+            "$w_*$, where the acceleration is still positive: the stable manifolds cross above $w_*$ and return to "
+            r"the axis. The map takes the interval from $w_1$ to $w_*$ to the curve $\varepsilon$, which touches the "
+            "axis at $w_*$."
+        ),
     )
 
 
@@ -397,7 +388,6 @@ def figure_8() -> Picture:
     lines = [replace(line, words=words) for line in leaves(model, frame, feet)]
     lines.append(Line(curve.points, "gamma", "gamma", r"$\gamma$", _share(curve.points, -0.13)))
     near = curve.points[(curve.points[:, 0] < -0.02) & (curve.points[:, 0] > -0.2)]
-    panel = Panel(((low, high), (-0.1 * v, v)), lines=lines, dots=[Dot("$w_*$", (0.0, 0.0))])
     caption = (
         "At a negative swan point the acceleration at the wall has a double zero with $a'' < 0$. The curve "
         r"$\gamma$ ends there with a cubic tangency. Stable manifolds of later times flatten as they pass above "
@@ -409,7 +399,7 @@ def figure_8() -> Picture:
         "Stable manifolds close to a negative swan point",
         ("t:t3", "t:t3-others", "s5-saddle"),
         str(model),
-        [panel],
+        [Panel(((low, high), (-0.1 * v, v)), lines=lines, dots=[Dot("$w_*$", (0.0, 0.0))])],
         facts={"order": _order(near, 0.0)},
         caption=caption,
     )

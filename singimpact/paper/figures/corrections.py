@@ -139,16 +139,10 @@ def figure_B2() -> Picture:
         low = box[0]
         start = -0.8 if slope == 1 else -2.2
         guide = np.array([[x, start + slope * (x - low[1])] for x in low])
-        words = "slopes 1 and 2"
-        lines = [Line(guide, "before", f"slope {slope}", f"slope {slope}", 0.35, words=words)]
+        lines = [Line(guide, "before", f"slope {slope}", f"slope {slope}", 0.35, words=("slopes 1 and 2"))]
         lines += [Line(points, "orbit", "errors", beads=True, words="five oscillators, $r = 1/2$") for points in rows]
         return Panel(box, r"$\log_{10} H$", r"$\log_{10}$ of the error", title, lines)
 
-    caption = (
-        r"The foot $X_H$ of an unfolded swan, in units of the half distance $H$ of $A$ and $B$, against the "
-        r"foot $X$ of the universal model, for five oscillators. (a) $|X_H - X|$ falls like $H$. (b) With the "
-        r"term $-\frac{1}{10}\chi(X^2 - 1)H$ taken off, $\chi = f_v + 2a'''/(3a'')$, it falls like $H^2$."
-    )
     return Picture(
         "B2",
         "How fast unfolded swans tend to the universal one",
@@ -157,7 +151,11 @@ def figure_B2() -> Picture:
         [panel("(a) $|X_H - X|$", left, 1), panel("(b) without the known term", right, 2)],
         2,
         facts,
-        caption,
+        (
+            r"The foot $X_H$ of an unfolded swan, in units of the half distance $H$ of $A$ and $B$, against the "
+            r"foot $X$ of the universal model, for five oscillators. (a) $|X_H - X|$ falls like $H$. (b) With the "
+            r"term $-\frac{1}{10}\chi(X^2 - 1)H$ taken off, $\chi = f_v + 2a'''/(3a'')$, it falls like $H^2$."
+        ),
     )
 
 
@@ -185,12 +183,6 @@ def figure_B3() -> Picture:
             mark = np.array([[_value(rate), orbits.slope]])
             lines.append(Line(mark, "crossing", "true orbit", beads=True, words="slopes of true orbits"))
             facts[f"{start.name}, r = {rate}"] = orbits.slope - log(1 / orbits.lambda_) / log(orbits.mu)
-    caption = (
-        r"Below $\gamma$, at the relative distance $\delta$, chatter ends a time proportional to "
-        r"$\delta^\alpha$ before $\tau_*$, $\alpha = \ln(1/\lambda)/\ln\mu$. The exponent lies between its "
-        r"limit $3/(3+2j)$ as $r \to 1$ and 1, for every contact order $j$ and every $r$. The dots are "
-        r"measured on orbits of six oscillators at $j = 1$ and 2."
-    )
     return Picture(
         "B3",
         "The threshold of complete chatter is Hoelder continuous",
@@ -198,7 +190,12 @@ def figure_B3() -> Picture:
         "; ".join(start.name for start in orbits_beside_gamma.STARTS),
         [Panel(((0.0, 1.0), (0.1, 1.05)), "$r$", r"$\alpha$", lines=lines)],
         facts=facts,
-        caption=caption,
+        caption=(
+            r"Below $\gamma$, at the relative distance $\delta$, chatter ends a time proportional to "
+            r"$\delta^\alpha$ before $\tau_*$, $\alpha = \ln(1/\lambda)/\ln\mu$. The exponent lies between its "
+            r"limit $3/(3+2j)$ as $r \to 1$ and 1, for every contact order $j$ and every $r$. The dots are "
+            r"measured on orbits of six oscillators at $j = 1$ and 2."
+        ),
     )
 
 

@@ -45,20 +45,18 @@ def figure_1() -> Picture:
                 words="touching points",
             )
         )
-    panel = Panel(((LEFT, RIGHT), (LOW, HIGH)), mesh=_mesh(), lines=lines)
-    caption = (
-        r"The impact surface: for each launch time $\tau$ and flight time $t$ the velocity $v$ with which the "
-        "flight comes back to the wall. Over states below $P$ it has two sheets, which meet in the fold $H$, the "
-        "horizon, where flights land with velocity zero: a vertical line over a state $w_1$, $w_2$ or $w_3$ of "
-        "$P$ touches the surface there. $P$ is the image of $H$ in the plane of states."
-    )
     return Picture(
         1,
         "The impact surface and its horizon",
         ("s2-smooth", "s2-horizon", "s2-two-sheets"),
         str(model),
-        [panel],
-        caption=caption,
+        [Panel(((LEFT, RIGHT), (LOW, HIGH)), mesh=_mesh(), lines=lines)],
+        caption=(
+            r"The impact surface: for each launch time $\tau$ and flight time $t$ the velocity $v$ with which the "
+            "flight comes back to the wall. Over states below $P$ it has two sheets, which meet in the fold $H$, the "
+            "horizon, where flights land with velocity zero: a vertical line over a state $w_1$, $w_2$ or $w_3$ of "
+            "$P$ touches the surface there. $P$ is the image of $H$ in the plane of states."
+        ),
     )
 
 
@@ -130,15 +128,6 @@ def figure_2() -> Picture:
         }
         together = [rows] if change.kind != "swallowtail" else [[row] for row in rows]  # its tip moves away at once
         panels += _equally_high([panel for curve in together for panel in _panels(letter, change, curve)])
-    caption = (
-        "How the apparent outline $P$ changes as one number of the model moves through a value where two cusps "
-        "(dots) meet. (a) Lips: a closed piece with two cusps shrinks to a point at the frequency $w_0$ = "
-        f"{CHANGES[0].value:.6f} and is gone. (b) Beaks: two cusps meet at $w_0$ = {CHANGES[1].value:.6f} and two "
-        "smooth branches are left. (c) Swallowtail: two cusps and a crossing merge at the clearance $c_0$ = "
-        rf"{CHANGES[2].value:g}. Vertically $v - q(\tau)$ is shown, $q$ a polynomial fitted to the branches (of "
-        "degree 3 in (a) and (b), 1 in (c)), since branches that nearly coincide are not seen apart otherwise. In "
-        "each row the scales are equal, and in (c) the window moves with the tip."
-    )
     return Picture(
         2,
         "The three generic transitions of the outline",
@@ -147,7 +136,15 @@ def figure_2() -> Picture:
         panels,
         3,
         facts,
-        caption,
+        (
+            "How the apparent outline $P$ changes as one number of the model moves through a value where two cusps "
+            "(dots) meet. (a) Lips: a closed piece with two cusps shrinks to a point at the frequency $w_0$ = "
+            f"{CHANGES[0].value:.6f} and is gone. (b) Beaks: two cusps meet at $w_0$ = {CHANGES[1].value:.6f} and two "
+            "smooth branches are left. (c) Swallowtail: two cusps and a crossing merge at the clearance $c_0$ = "
+            rf"{CHANGES[2].value:g}. Vertically $v - q(\tau)$ is shown, $q$ a polynomial fitted to the branches (of "
+            "degree 3 in (a) and (b), 1 in (c)), since branches that nearly coincide are not seen apart otherwise. In "
+            "each row the scales are equal, and in (c) the window moves with the tip."
+        ),
     )
 
 
@@ -169,17 +166,14 @@ def _panels(letter: str, change: Change, rows: list[tuple[str, list[Curve]]]) ->
     for relation, surface in rows:
         cusps = [shear(curve.marked("cusp")) for curve in surface]
         cusps += [point] if relation == "=" and change.kind == "lips" else []
-        dots = [Dot("", (float(x), float(y))) for cusp in cusps for x, y in cusp]
-        lines = [Line(shear(curve.points), "P", "P") for curve in surface]
-        note = {"=": "one point", ">": "no outline here"}.get(relation, "") if change.kind == "lips" else ""
         panels.append(
             Panel(
                 box,
                 y=y if relation == "<" else "",
-                note=note,
+                note=({"=": "one point", ">": "no outline here"}.get(relation, "") if change.kind == "lips" else ""),
                 title=f"({letter}) {change.kind}: ${name} {relation} {name}_0$",
-                lines=lines,
-                dots=dots,
+                lines=[Line(shear(curve.points), "P", "P") for curve in surface],
+                dots=[Dot("", (float(x), float(y))) for cusp in cusps for x, y in cusp],
             )
         )
     return panels
@@ -253,21 +247,15 @@ def figure_9() -> Picture:
             )
         )
         v = 1.25 * abs(swan.projected["D"][1])
-        cusps = [Dot("$D'$", swan.projected["D"]), Dot("$C''$", swan.reset["C"])]
         panels.append(
             Panel(
                 box(swan, -4.2, 4.2, -v, v),
                 title=f"({letter}) outline $P$, $c={values[2]}$",
                 lines=[Line(ring(swan, "P"), "P", "P")],
-                dots=[*letters, *cusps],
+                dots=[*letters, *[Dot("$D'$", swan.projected["D"]), Dot("$C''$", swan.reset["C"])]],
             )
         )
         facts[f"cusps_{kind}"] = float(sum(len(c.marked("cusp")) for c in swan.surface.outline if c.closed))
-    caption = (
-        "A swan point opens as the clearance $c$ passes $c_0$ = -1 (a, positive) or 1 (b, negative). Left: the "
-        "acceleration at the wall, $a_c$, gets two zeros $A$ and $B$. Right: a closed piece of the apparent "
-        "outline $P$ is born, which touches the axis at $A$ and $B$ and has a cusp at either end, $D'$ and $C''$."
-    )
     return Picture(
         9,
         "Graphs of a and the outlines of unfolded swans",
@@ -276,7 +264,11 @@ def figure_9() -> Picture:
         panels,
         2,
         facts,
-        caption,
+        (
+            "A swan point opens as the clearance $c$ passes $c_0$ = -1 (a, positive) or 1 (b, negative). Left: the "
+            "acceleration at the wall, $a_c$, gets two zeros $A$ and $B$. Right: a closed piece of the apparent "
+            "outline $P$ is born, which touches the axis at $A$ and $B$ and has a cusp at either end, $D'$ and $C''$."
+        ),
     )
 
 
@@ -299,25 +291,16 @@ def figure_10() -> Picture:
         ]
         lines += [Line(piece, "graph", "first hits", words="first hits with $v > 0$") for piece in _visible(tau, curve)]
         letter = NAMED.get(point)
-        dots = [] if letter is None else [Dot(f"${letter}$", _on(letter))]
-        title = f"$\\sigma = {point:.3g}$" if letter is None else f"$\\sigma = {point:.3g}$, ${letter}$"
         panels.append(
             Panel(
                 ((-3.2 * size, 7.2 * size), (1.1 * low, 1.1 * high)),
                 "$t$" if n >= 4 else "",
                 "$v$" if n % 4 == 0 else "",
-                title,
+                (f"$\\sigma = {point:.3g}$" if letter is None else f"$\\sigma = {point:.3g}$, ${letter}$"),
                 lines,
-                dots=dots,
+                dots=([] if letter is None else [Dot(f"${letter}$", _on(letter))]),
             )
         )
-    caption = (
-        r"Sections of $V'$ for launch times $\tau = \tau_* + \sigma$, with $\sigma$ in half distances of $A$ and "
-        r"$B$: the velocity $v$ of the flight that is back at the wall after the time $t$. A state $(\tau, v)$ has "
-        "as many returns as the horizontal line at $v$ has crossings with $t > 0$; the blue part is the first of "
-        "them. To the right of $D$ the section has two folds, whose flights land with velocity zero. The numbers "
-        "on the vertical axes show that each panel has a scale of its own."
-    )
     return Picture(
         10,
         "Sections of V' at constant tau near a positive swan (sigma in half distances of A and B)",
@@ -325,7 +308,13 @@ def figure_10() -> Picture:
         str(swan.model),
         panels,
         4,
-        caption=caption,
+        caption=(
+            r"Sections of $V'$ for launch times $\tau = \tau_* + \sigma$, with $\sigma$ in half distances of $A$ and "
+            r"$B$: the velocity $v$ of the flight that is back at the wall after the time $t$. A state $(\tau, v)$ has "
+            "as many returns as the horizontal line at $v$ has crossings with $t > 0$; the blue part is the first of "
+            "them. To the right of $D$ the section has two folds, whose flights land with velocity zero. The numbers "
+            "on the vertical axes show that each panel has a scale of its own."
+        ),
     )
 
 

@@ -74,8 +74,7 @@ def shadow() -> Array:
     """The next hits behind the arc AD of H, from D to C (negative swan)."""
     swan = negative()
     (found,) = swan.surface.shadow
-    points = found.points[np.argsort(found.points[:, 0])]
-    return np.vstack([[swan.points["D"]], points, [swan.points["C"]]])
+    return np.vstack([[swan.points["D"]], found.points[np.argsort(found.points[:, 0])], [swan.points["C"]]])
 
 
 def hidden_negative() -> Array:
@@ -87,12 +86,11 @@ def hidden_negative() -> Array:
 def figure_11() -> Picture:
     """The visible part S of an unfolded positive swan."""
     swan, size = positive(), half(positive())
-    dots = on_surface(swan)
     panel = Panel(
         box(swan, -4.4, 4.4, -6 * size, 6 * size),
         y="$t$",
         lines=_lettered(swan),
-        dots=dots,
+        dots=on_surface(swan),
         regions=[
             Region(
                 visible_positive(),
@@ -102,12 +100,6 @@ def figure_11() -> Picture:
             )
         ],
     )
-    caption = (
-        "The unfolded positive swan on the impact surface. The horizon $H$ and the zero set $Z$ are closed curves "
-        r"through the tangency points $A$ and $B$, each the image of the other under $(\tau, t) \to (\tau + t, "
-        "-t)$. Flights of the grey part $S$ hit the wall for the first time; $D$ and $C$ are the cusp points of "
-        r"$p$ and $\phi$, and $E$ is the flight from rest to rest."
-    )
     return Picture(
         11,
         "Positive swan: the visible part S of V'",
@@ -115,7 +107,12 @@ def figure_11() -> Picture:
         str(swan.model),
         [panel],
         facts={"tangencies": 2.0},
-        caption=caption,
+        caption=(
+            "The unfolded positive swan on the impact surface. The horizon $H$ and the zero set $Z$ are closed curves "
+            r"through the tangency points $A$ and $B$, each the image of the other under $(\tau, t) \to (\tau + t, "
+            "-t)$. Flights of the grey part $S$ hit the wall for the first time; $D$ and $C$ are the cusp points of "
+            r"$p$ and $\phi$, and $E$ is the flight from rest to rest."
+        ),
     )
 
 
@@ -135,17 +132,15 @@ def figure_14() -> Picture:
     window = box(swan, -4.6, 4.6, -5 * size, 6 * size)
     (left, right), (_, high) = window
     whole = np.array([[left, 0], [right, 0], [right, high], [left, high]])
-    dots = on_surface(swan)
-    lines = [
-        *_lettered(swan),
-        Line(shadow(), "shadow", "shadow DC", "shadow", 0.5, words="shadow: next hits behind the visible arc $AD$"),
-        Line(stretch(swan, "H", "A", "D"), "jump", "visible arc AD of H", words="visible arc $AD$ of $H$"),
-    ]
     panel = Panel(
         window,
         y="$t$",
-        lines=lines,
-        dots=dots,
+        lines=[
+            *_lettered(swan),
+            Line(shadow(), "shadow", "shadow DC", "shadow", 0.5, words="shadow: next hits behind the visible arc $AD$"),
+            Line(stretch(swan, "H", "A", "D"), "jump", "visible arc AD of H", words="visible arc $AD$ of $H$"),
+        ],
+        dots=on_surface(swan),
         regions=[
             Region(
                 whole,
@@ -156,18 +151,17 @@ def figure_14() -> Picture:
             Region(hidden_negative(), WHITE),
         ],
     )
-    caption = (
-        "The unfolded negative swan on the impact surface: all of $t > 0$ is visible but the loop through $A$, "
-        "$D$, $C$ and $B$. The arc $AD$ of the horizon is grazed by first hits, and hides the sheet behind it as "
-        "far as the shadow $DC$. The map is discontinuous at the states of that arc."
-    )
     return Picture(
         14,
         "Negative swan: what is visible of V'",
         ("s6n-visible", "s6n-corr"),
         str(swan.model),
         [panel],
-        caption=caption,
+        caption=(
+            "The unfolded negative swan on the impact surface: all of $t > 0$ is visible but the loop through $A$, "
+            "$D$, $C$ and $B$. The arc $AD$ of the horizon is grazed by first hits, and hides the sheet behind it as "
+            "far as the shadow $DC$. The map is discontinuous at the states of that arc."
+        ),
     )
 
 
@@ -237,12 +231,6 @@ def figure_12() -> Picture:
         [Region(arc_phi, label=r"$\mathcal{S}''$", words=IMAGES, place=(swan.B - 0.25 * size, -0.11 * v))],
     )
     panels = [first[0], second[0], first[1], second[1]]
-    caption = (
-        "The images of the visible part $S$ of the positive swan: under $p$, the states that hit before they "
-        r"leave the swan, and under $\phi$, their landings. Both are bounded by arcs of the same curve $P$ with "
-        "cusps $D'$ and $C''$. The two branches of $P$ are closer than a line's width near the cusps; below, the "
-        f"velocities are magnified {ZOOM:g} times."
-    )
     return Picture(
         12,
         "Images of the positive swan under p and phi",
@@ -250,7 +238,12 @@ def figure_12() -> Picture:
         str(swan.model),
         panels,
         2,
-        caption=caption,
+        caption=(
+            "The images of the visible part $S$ of the positive swan: under $p$, the states that hit before they "
+            r"leave the swan, and under $\phi$, their landings. Both are bounded by arcs of the same curve $P$ with "
+            "cusps $D'$ and $C''$. The two branches of $P$ are closer than a line's width near the cusps; below, the "
+            f"velocities are magnified {ZOOM:g} times."
+        ),
     )
 
 
@@ -289,14 +282,6 @@ def figure_15() -> Picture:
         [Dot("$A''$", images["A"]), Dot("$B''=D''$", images["B"]), Dot("$E''$", images["E"])],
         [],
     )
-    facts = {"gap": float(np.hypot(*(jump[0] - np.array(images["D"]))))}
-    caption = (
-        r"The plane of states is cut along $\delta$, the image of the grazing arc $AD$ under $p$. Landing after "
-        r"the graze, $\phi$ takes one edge of the cut to the interval $A''D''$ and the other, which passes the "
-        "graze and hits on the shadow, to the arc $D''C''$. The arc $CB$ of the zero set lands on the same arc, "
-        "which is drawn dotted and dashed. The two branches of $P$ are closer than a line's width near the "
-        f"cusps; below, the velocities are magnified {ZOOM:g} times."
-    )
     return Picture(
         15,
         "Images of the negative swan under p and phi",
@@ -304,6 +289,12 @@ def figure_15() -> Picture:
         str(swan.model),
         [first[0], second[0], first[1], second[1]],
         2,
-        facts,
-        caption,
+        {"gap": float(np.hypot(*(jump[0] - np.array(images["D"]))))},
+        (
+            r"The plane of states is cut along $\delta$, the image of the grazing arc $AD$ under $p$. Landing after "
+            r"the graze, $\phi$ takes one edge of the cut to the interval $A''D''$ and the other, which passes the "
+            "graze and hits on the shadow, to the arc $D''C''$. The arc $CB$ of the zero set lands on the same arc, "
+            "which is drawn dotted and dashed. The two branches of $P$ are closer than a line's width near the "
+            f"cusps; below, the velocities are magnified {ZOOM:g} times."
+        ),
     )

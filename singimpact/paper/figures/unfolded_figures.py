@@ -41,19 +41,12 @@ def figure_13() -> Picture:
             words=r"$\varepsilon$: image of the interval from $E'$ to $A$",
         )
     )
-    dots = [Dot("$A$", places["A"]), Dot("$B$", places["B"]), Dot("$E'$", places["E"]), Dot("$N$", swan.N)]
     facts = {"gamma_end": float(curve.points[-1, 0]), "E": places["E"][0], "A": swan.A, "N": float(swan.N[0])}
     panel = Panel(
         window,
         lines=lines,
-        dots=dots,
+        dots=[Dot("$A$", places["A"]), Dot("$B$", places["B"]), Dot("$E'$", places["E"]), Dot("$N$", swan.N)],
         regions=[Region(edge, words=r"$\mathcal{S}'$: states that hit before they leave the swan")],
-    )
-    caption = (
-        r"The curve $\gamma$, which touches the axis at $B$, divides the states $S'$ of an unfolded positive swan. "
-        "Below it each orbit stays on its stable manifold, and the mass comes to rest between $A$ and $B$; above "
-        r"it the impacts leave $S'$. The map takes the interval from $E'$ to $A$ to the curve $\varepsilon$, which "
-        "ends on $P$ at $N$."
     )
     return Picture(
         13,
@@ -62,7 +55,12 @@ def figure_13() -> Picture:
         str(swan.model),
         [panel],
         facts={**facts, "size": size},
-        caption=caption,
+        caption=(
+            r"The curve $\gamma$, which touches the axis at $B$, divides the states $S'$ of an unfolded positive swan. "
+            "Below it each orbit stays on its stable manifold, and the mass comes to rest between $A$ and $B$; above "
+            r"it the impacts leave $S'$. The map takes the interval from $E'$ to $A$ to the curve $\varepsilon$, which "
+            "ends on $P$ at $N$."
+        ),
     )
 
 
@@ -136,13 +134,6 @@ def figure_16() -> Picture:
             box(swan, -4, 4.2, -0.25 * v, 1.1 * v), title=r"after $R$", lines=third, dots=[*letters, Dot("$Q$", swan.Q)]
         ),
     ]
-    caption = (
-        "How the map acts on five segments at an unfolded negative swan. The two edges 2 and 3 of the cut are one "
-        r"arc $\delta$, and the map is discontinuous there: 2 goes to the interval $A''D''$ of the axis, 3 to the "
-        "arc from $D''$ to $C''$. The segment 4 goes to that same arc. Edge 3 on the left and the image of 4 are "
-        "drawn beside their true places, so that they can be seen. The rebound $R$ turns the velocities around "
-        "and halves them, and $C''$ becomes $Q$."
-    )
     return Picture(
         16,
         "The action of the map on the segments of a negative swan",
@@ -150,7 +141,13 @@ def figure_16() -> Picture:
         str(model),
         panels,
         2,
-        caption=caption,
+        caption=(
+            "How the map acts on five segments at an unfolded negative swan. The two edges 2 and 3 of the cut are one "
+            r"arc $\delta$, and the map is discontinuous there: 2 goes to the interval $A''D''$ of the axis, 3 to the "
+            "arc from $D''$ to $C''$. The segment 4 goes to that same arc. Edge 3 on the left and the image of 4 are "
+            "drawn beside their true places, so that they can be seen. The rebound $R$ turns the velocities around "
+            "and halves them, and $C''$ becomes $Q$."
+        ),
     )
 
 
@@ -207,13 +204,6 @@ def figure_17() -> Picture:
     facts = {"X": swan.X, "Q": swan.Q[0], "pieces": float(len(manifold)), "generations": float(len(loops))}
     facts |= _accumulation(loops, arcs[0].points, swan.projected["D"][1] / 2)
     panels = [Panel(window, title="(a)", lines=lines, dots=dots), _beside_gamma(lines, arcs[0].points, window[1][1])]
-    caption = (
-        "What an unfolded negative swan creates. The orbit from $A$ lands at $Q$ and comes to rest at $X$, so the "
-        r"stable manifold of $X$ contains the arc $\lambda$ from $Q$ to $A$. The inverse images of $\lambda$ are "
-        r"loops at $A$ that wrap around $\delta$ and its inverse images; they accumulate on $\gamma$, the "
-        "threshold of complete chatter, each nearer by one and the same factor in the limit. (b) The lower left "
-        r"of (a), with the distance from $\gamma$ along $\tau$ instead of $\tau$: there the loops are seen apart."
-    )
     return Picture(
         17,
         "Dynamics created at the unfolding of a negative swan",
@@ -222,7 +212,13 @@ def figure_17() -> Picture:
         panels,
         1,
         facts,
-        caption,
+        (
+            "What an unfolded negative swan creates. The orbit from $A$ lands at $Q$ and comes to rest at $X$, so the "
+            r"stable manifold of $X$ contains the arc $\lambda$ from $Q$ to $A$. The inverse images of $\lambda$ are "
+            r"loops at $A$ that wrap around $\delta$ and its inverse images; they accumulate on $\gamma$, the "
+            "threshold of complete chatter, each nearer by one and the same factor in the limit. (b) The lower left "
+            r"of (a), with the distance from $\gamma$ along $\tau$ instead of $\tau$: there the loops are seen apart."
+        ),
     )
 
 

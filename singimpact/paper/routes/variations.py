@@ -25,8 +25,8 @@ RATES = {
     q: q1,
     q1: -f_x * q - f_u * q1,
 }
+# At the launch: E is the acceleration A there, and x = c, x-dot = v at t = 0 whatever tau is.
 START = {u: v, E: A, P: 0, P1: 0, b: 0, b1: 1, q: 1, q1: 0}
-"""At the launch: E is the acceleration A there, and x = c, x-dot = v at t = 0 whatever tau is."""
 
 
 def rate_of(expression: Any) -> Any:
@@ -73,8 +73,8 @@ def wronskian() -> Any:
     return determinant
 
 
+# iota reads a flight backwards: launch and landing exchange their velocities, t becomes -t.  phi = p o iota.
 INVOLUTION = {v: u, u: v}
-"""iota reads a flight backwards: launch and landing exchange their velocities, t becomes -t.  phi = p o iota."""
 
 
 @equation("s2-singular-p")

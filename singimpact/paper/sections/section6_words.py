@@ -8,8 +8,24 @@ from singimpact.documents.arranging import factored, in_powers
 from singimpact.documents.document_steps import Section, Step
 from singimpact.paper.claims.sections.section6_exact import LANDING, OUTLINE, z
 from singimpact.paper.routes import unfolding as swan
-from singimpact.paper.routes.scaling import WEIGHTS, alpha, limit_acceleration, limit_launch, phi_1, phi_2, scaled, y
-from singimpact.paper.routes.unfolding import A, B, C, D, E, r, sigma, t
+from singimpact.paper.routes.unfolding import (
+    WEIGHTS,
+    A,
+    B,
+    C,
+    D,
+    E,
+    alpha,
+    limit_acceleration,
+    limit_launch,
+    phi_1,
+    phi_2,
+    r,
+    scaled,
+    sigma,
+    t,
+    y,
+)
 from singimpact.theory.notation import latex, name_of
 
 

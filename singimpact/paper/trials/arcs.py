@@ -10,6 +10,7 @@ import sympy
 
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.solving import halved
+from singimpact.contact.points import tangency_points
 from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.paper.trials import true_orbits
 from singimpact.status import Status
@@ -132,27 +133,25 @@ def _fate(point: Place, factor: float, impacts: int = 400) -> tuple[str, int]:
     return "undecided", impacts
 
 
-@lru_cache(maxsize=1)
-def leaves_gamma() -> float:
-    """Factor by which an orbit started beside gamma (v off by 1e-3) has left it once sigma has shrunk 30-fold."""
+def leaves_gamma() -> tuple[str, bool]:
+    """The factor by which an orbit started beside gamma (v off by 1e-3) has left it once sigma has shrunk 30-fold."""
     growth = []
     for point in places():
-        sigma, v = _on_gamma(point)
-        offset = 1e-3
+        (sigma, v), offset = _on_gamma(point)[-1], 1e-3
         tau, speed, along = point.tau + sigma, v * (1 - offset), point.coefficient
         while abs(tau - point.tau) > abs(sigma) / 30:
             step = point.model.impact_map(tau, speed)
             tau, speed = float(step.tau), float(step.v)
         growth.append(abs(speed / (along * (tau - point.tau) ** 2) - 1) / offset)
-    return min(growth)
+    name = f"true orbits beside gamma leave it on both models (v/gamma off by 1e-3 grows {min(growth):.3g}-fold)"
+    return name, min(growth) > 10
 
 
-def _on_gamma(place: Place) -> tuple[float, float]:
-    """A point of gamma near sigma = -0.02, found by following G backwards."""
+def _on_gamma(place: Place) -> list[tuple[float, float]]:
+    """Points of gamma up to sigma = -0.02, found by following G backwards."""
     flow = true_orbits.scipy_flow(place.model, place.tau)
     start = true_orbits.SETTINGS.start[0]
-    orbit = true_orbits.backwards(flow, place.r, -start, place.coefficient * start**2, place.multiplier, 0.02)
-    return orbit[-1]
+    return true_orbits.backwards(flow, place.r, -start, place.coefficient * start**2, place.multiplier, 0.02)
 
 
 @dataclass(frozen=True)
@@ -161,21 +160,16 @@ class EigenvalueCase:
 
     name: str
     r: float
-    expected: float
     found: float
 
 
 @lru_cache(maxsize=1)
 def eigenvalues() -> tuple[EigenvalueCase, ...]:
-    """From differences of the impact map at points of gamma on both models, against the homogeneous model."""
+    """From differences of the impact map at points of gamma on both models."""
     cases = []
     for point in places():
-        expected = float(eigenvalues_on_gamma(1)[0].subs(lambda_, sympy.Float(point.multiplier, 30)))
-        flow = true_orbits.scipy_flow(point.model, point.tau)
-        start = true_orbits.SETTINGS.start[0]
-        orbit = true_orbits.backwards(flow, point.r, -start, point.coefficient * start**2, point.multiplier, 0.02)
-        points = [(sigma, _larger_eigenvalue(point, sigma, v)) for sigma, v in orbit[-4:]]
-        cases.append(EigenvalueCase(point.name, point.r, expected, float(true_orbits.extrapolated(points))))
+        points = [(sigma, _larger_eigenvalue(point, sigma, v)) for sigma, v in _on_gamma(point)[-4:]]
+        cases.append(EigenvalueCase(point.name, point.r, float(true_orbits.extrapolated(points))))
     return tuple(cases)
 
 
@@ -217,17 +211,12 @@ def cube_root() -> float:
     return float(np.log(step.flight_time[0] / step.flight_time[1]) / np.log(1e3))
 
 
-@dataclass(frozen=True)
-class Eigenvalue:
-    """The larger eigenvalue of DG on gamma: of the homogeneous model, and on true orbits in many digits."""
-
-    expected: float
-    found: float
-
-
 @lru_cache(maxsize=1)
-def eigenvalue() -> Eigenvalue:
-    """From differences of the closed form at points of gamma at the swan of the linear model, extrapolated."""
+def eigenvalue() -> tuple[float, float]:
+    """The larger eigenvalue of DG on gamma at the swan of the linear model: of the homogeneous one, and on true orbits.
+
+    The second is extrapolated from differences of the closed form at points of gamma in many digits.
+    """
     context, origin, clearance = true_orbits.many_digits(2)
     flow = true_orbits.closed_flow(Fraction(2), clearance, origin, context)
     r, rate = context.mpf(1) / 2, true_orbits.lambda_of(0.5, 2)
@@ -251,20 +240,10 @@ def eigenvalue() -> Eigenvalue:
         )
         points.append((sigma, (trace + context.sqrt(trace**2 - 4 * determinant)) / 2))
     expected = float(eigenvalues_on_gamma(2)[0].subs(lambda_, sympy.Float(rate, 30)))
-    return Eigenvalue(expected, float(true_orbits.extrapolated(points)))
+    return expected, float(true_orbits.extrapolated(points))
 
 
-@dataclass(frozen=True)
-class Fates:
-    """Numbers of orbits followed and of those that left, and the largest a where the others came to rest."""
-
-    count: int
-    lost: int
-    largest: float
-
-
-@lru_cache(maxsize=1)
-def fates() -> Fates:
+def fates() -> tuple[str, bool]:
     """From sigma in {-0.05, 0.02} and v at 0.2 to 5 times the height of gamma at |sigma|, at both models' swans."""
     count, lost, largest = 0, 0, -np.inf
     for oscillator in true_orbits.MODELS.values():
@@ -280,4 +259,82 @@ def fates() -> Fates:
             count += len(v)
             largest = max(largest, float(np.max(model.acceleration(tau))))
             lost += int(np.count_nonzero(v > 1e-8 * height))
-    return Fates(count, lost, float(largest))
+    name = (
+        f"{count} true orbits from states near w_*, below and above gamma on two models, all come to rest at "
+        f"points with a < 0 (largest a there {float(largest):.1e})"
+    )
+    return name, largest < 0 and lost == 0
+
+
+# Orbits near a tangency with a' < 0 on two models: no jumps, chatter, and leaves followed backwards.
+
+
+def foliated() -> list[tuple[str, ImpactOscillator, float, float]]:
+    """(name, model, tau_*, k) at the first tangency with a' < 0."""
+    found = []
+    for name, oscillator in true_orbits.MODELS.items():
+        model = ImpactOscillator(**oscillator.to_dict())
+        tau = next(point.tau for point in tangency_points(model) if point.kind == "foliation")
+        found.append((name, model, tau, float(model.acceleration(tau, order=1)) / 6))
+    return found
+
+
+def no_jumps() -> tuple[str, bool]:
+    """Neighbouring flight times on a grid with |sigma| <= 0.05 and v up to 4 |k| sigma^2 at its corner."""
+    states, largest = 0, 0.0
+    for _, model, tau, k in foliated():
+        sigma = np.linspace(-0.05, 0.05, 81)
+        v = np.linspace(0, 4 * abs(k) * 0.05**2, 61)[1:]
+        times = np.asarray(model.impact_map((tau + sigma)[:, None], v[None, :]).flight_time)
+        states += times.size
+        largest = max(largest, float(np.abs(np.diff(times, axis=0)).max()), float(np.abs(np.diff(times, axis=1)).max()))
+    name = f"no jump of F among {states} neighbouring states on two models, largest step {largest:.1e}"
+    return name, largest < 0.05
+
+
+def chatter() -> tuple[str, bool]:
+    """Arcs p(t = l sigma), 0 < sigma <= 0.05, for l = 0.1, 0.5, 2, followed together: the largest v over them falls."""
+    count, last, factor = 40, 0.0, 0.0
+    for _, model, point, k in foliated():
+        for ell in (0.1, 0.5, 2.0):
+            sigma = np.linspace(0.002, 0.05, 25)
+            tau, v = point + sigma, -k * (3 * ell + ell**2) * sigma**2
+            start, sizes = v.max(), []
+            for _ in range(count):
+                step = model.impact_map(tau, v)
+                tau, v = np.asarray(step.tau), np.asarray(step.v)
+                sizes.append(float(v.max()))
+            last = max(last, sizes[-1] / start)
+            factor = max(factor, sizes[-1] / sizes[-2])
+    name = (
+        f"the largest v over arcs t = l sigma of true orbits falls below {last:.0e} of its start after "
+        f"{count} impacts on two models, by a factor of at most {factor:.3f} an impact in the end"
+    )
+    return name, last < 1e-6 and factor < 1
+
+
+@dataclass(frozen=True)
+class Leaf:
+    """A leaf from its foot tau_* + foot on Pi_0 backwards to tau_* + end on Pi_0."""
+
+    name: str
+    foot: float
+    end: float
+
+
+@lru_cache(maxsize=1)
+def leaves() -> tuple[Leaf, ...]:
+    """Launch from rest at tau_* + end, end < 0, where a > 0; chatter comes to rest at the foot of the leaf."""
+    rows = []
+    for name, model, point, _ in foliated():
+        r = as_float(model.restitution)
+        for end in (-0.04, -0.02, -0.01):
+            tau, v = point + end, 0.0
+            for _ in range(400):
+                step = model.impact_map(tau, v)
+                tau, v = float(step.tau), float(step.v)
+                if v < 1e-13:
+                    break
+            rest = tau - 2 * v / (float(model.acceleration(tau)) * (1 - r))
+            rows.append(Leaf(name, rest - point, end))
+    return tuple(rows)

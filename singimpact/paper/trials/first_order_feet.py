@@ -110,12 +110,12 @@ FINE = 4001  # times at which the height of a hop is sampled
 FROM = ((0.3, 0.0), (0.5, 0.0), (0.3, 0.02), (0.6, 0.01))  # (phase in periods, v) of starts that end in the same orbit
 
 
+# Oscillators whose a_c is largest at t = 0 modulo its period, where it is 0 at the clearance 1.
 LIFTS = (
     Model("x'' + x = cos 2t", "x", "cos(2*t)"),
     Model("x'' + x'/2 + x = cos 2t", "x + 0.5*xdot", "cos(2*t)"),
     Model("x'' + x'/10 + x + 3x^3/10 = (13/10) cos 2t", "x + 0.1*xdot + 0.3*x**3", "1.3*cos(2*t)"),
 )
-"""Oscillators whose a_c is largest at t = 0 modulo its period, where it is 0 at the clearance 1."""
 
 
 @dataclass(frozen=True)

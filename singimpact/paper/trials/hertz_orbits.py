@@ -18,10 +18,10 @@ from singimpact.oscillator.model import Oscillator
 POWERS = tuple(Fraction(n, 10) for n in (1, 2, 3, 5))
 FARTHEST = 0.01  # h of the first place; what an oscillator has beyond its leading term is of order h^2 here
 HALF = Fraction(1, 2)
+# v/(b h^(j+1)) at the two places: half the flight time over h.
 FLIGHTS = {q: (1 / 60, 1 / 180) if q == HALF else (1 / 250, 1 / 750) for q in POWERS}
-"""v/(b h^(j+1)) at the two places: half the flight time over h."""
+# Relative widths of the last brackets; half the width costs 2^(3s/(3 + (2+q) j)) times the impacts, s = N - (j+1).
 NARROW = {Fraction(1, 10): 1e-6, Fraction(1, 5): 1e-6, Fraction(3, 10): 1e-5, HALF: 2e-3}
-"""Relative widths of the last brackets; half the width costs 2^(3s/(3 + (2+q) j)) times the impacts, s = N - (j+1)."""
 IMPACTS = 4_000_000  # of one velocity
 BLOCK = 8192
 SHORT = 1 / 8  # of 1/(j + 1), below the part 3/(3 + (2+q) j) of h that chatter on gamma would last under constant a_c

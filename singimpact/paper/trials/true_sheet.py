@@ -13,7 +13,7 @@ from singimpact.algebra.rings import DOUBLES
 from singimpact.algebra.solving import secant
 from singimpact.contact.contact import force_jet
 from singimpact.impact_oscillator import ImpactOscillator
-from singimpact.paper.trials import arcs, leaves, true_orbits
+from singimpact.paper.trials import arcs, true_orbits
 
 STEPS = (0.04, 0.02, 0.01, 0.005)  # of the distance from the point; the rest is extrapolated to distance 0
 PAIRS = ((1, 0), (0, 1), (0, 2), (1, 1))  # derivatives of f that v_c contains to third order
@@ -87,7 +87,7 @@ def tangencies() -> tuple[Place, ...]:
 @lru_cache(maxsize=1)
 def foliated() -> tuple[Place, ...]:
     """Both models at their tangency with a' < 0."""
-    return tuple(Place(name, model, tau) for name, model, tau, _ in leaves.places())
+    return tuple(Place(name, model, tau) for name, model, tau, _ in arcs.foliated())
 
 
 @lru_cache(maxsize=1)

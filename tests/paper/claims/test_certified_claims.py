@@ -112,7 +112,7 @@ MUTANTS = {
         "outline = _shown(source, sheet_), sheet_.to_sympy(form.offset) / 2",
         "e:defq e:hdef e:pdef s4-blowup s4-normal-id2"),
     "a step of the normal form of another size": (
-        "germs/germ_forms.py",
+        "germs/__init__.py",
         "step = value * ring.rational(Fraction(1, power))",
         "step = value",
         "e:pdef"),
@@ -216,7 +216,7 @@ MUTANTS = {
         "displaced = sum(value * s ** (n + 2) / (n + 2)",
         "s6-scaling s6p-none"),
     "a force that is scaled otherwise": (
-        "paper/routes/scaling.py",
+        "paper/routes/unfolding.py",
         "sigma**3 * alpha - x * phi_1 - y * phi_2",
         "sigma**2 * alpha - x * phi_1 - y * phi_2",
         "s6-scaling"),

@@ -16,6 +16,8 @@ MODELS = {
     "duffing": si.ImpactOscillator("x + x**3", "cos(1.7*t)", "0.3", "0.6"),
     "parametric": si.ImpactOscillator("(1 + cos(2*t)/5)*x + x**3", "cos(t)", "0.3", "0.6"),
     "without a clock": si.ImpactOscillator("x - (1 - x**2)*xdot", "0", "-1.5", "0.8"),
+    "between walls": si.linear("2.8", "-0.5", "0.8", upper=("0.4", "-0.7*v + v**2/50")),
+    "duffing between walls": si.ImpactOscillator("x + x**3", "3*cos(1.7*t)", "-0.5", "0.6", upper="0.4"),
 }
 
 

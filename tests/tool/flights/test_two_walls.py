@@ -70,6 +70,23 @@ def test_a_first_hit_is_the_first_of_two_flights_with_one_wall_each(name, wall):
     assert decided > 150
 
 
+@pytest.mark.parametrize("gap", [1e-12, 1e-6, 10.0, 1e6])
+@pytest.mark.parametrize("name", ["linear", "undamped", "Duffing"])
+def test_gaps_and_velocities_of_any_size(name, gap):
+    osc, rng = si.ImpactOscillator(*MODELS[name], 0, "0.8", upper=gap), RNG(1)
+    tau, v = rng.uniform(0, 6, 60), 10 ** rng.uniform(-150, 3, 60)
+    v[:20] = 10 ** rng.uniform(-9, -5, 20)
+    own, hit = osc.one_wall().first_hit(tau, v, horizon=60), osc.first_hit(tau, v, horizon=60)
+    other = osc.one_wall("upper").launch(0.0, -v, tau, horizon=60)
+    times = np.stack([own.flight_time, other.flight_time])
+    decided = (own.status != Status.unresolved) & (other.status != Status.unresolved) & np.isfinite(times.min(axis=0))
+    assert decided.sum() > 30
+    assert (hit.status[decided] == Status.hit).all()
+    assert (hit.wall[decided] == times.argmin(axis=0)[decided]).all()
+    error = np.abs(hit.flight_time / times.min(axis=0) - 1)[decided]
+    assert (error < 8 * hit.error[decided] + 1e-13).all()
+
+
 def integrated(osc: si.ImpactOscillator, wall: int, tau: float, v: float) -> tuple[int, float, float]:
     """Wall, flight time and x' of a first hit by scipy."""
     f, g = (compile(str(tree).replace("xdot", "u"), "law", "eval") for tree in (osc.force(), osc.forcing()))

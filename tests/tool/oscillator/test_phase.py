@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from singimpact.algebra.numbers import as_float, constant
-from singimpact.oscillator.phase import phase_of, reduced
+from singimpact.oscillator.period import phase_of, reduced
 
 
 @pytest.mark.parametrize("text", ["2*pi", "pi/1.7", "1/3", "1e-7", "1e-70", "1000000*pi"])

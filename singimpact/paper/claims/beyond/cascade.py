@@ -78,6 +78,7 @@ def _in_r(stated: tuple[int, int]) -> Check:
     return identity(lambda: rate**2 * fold.N_r_at_fixed_points(), "derived from the blow-up at a tangency")(found)
 
 
+# Models with a border orbit, and two clearances between which it lies.
 MODELS = (
     ("x'' + x = cos 2.8t, r = 3/10", Oscillator("x", "cos(2.8*t)", 0, "0.3"), ("0.47", "0.475")),
     ("x'' + x = cos 2.8t, r = 1/2", Oscillator("x", "cos(2.8*t)", 0, "0.5"), ("0.6", "0.61")),
@@ -88,14 +89,11 @@ MODELS = (
         ("0.53", "0.55"),
     ),
 )
-"""Models with a border orbit, and two clearances between which it lies."""
+# Relative distances of what is measured from what is stated: of ratios of edges, and of multipliers. A multiplier
+# differs from its limit by a part of itself, so the last ones of doubles, 0.03 to 0.1, are off by 2e-3.
 SAME = (1e-6, 4e-3)
-"""Relative distances of what is measured from what is stated: of ratios of edges, and of multipliers.
-
-A multiplier differs from its limit by a part of itself, so the last ones of doubles, 0.03 to 0.1, are off by 2e-3.
-"""
+# The last multiplier must be below this for its share to be near the limit; at r = 4/5 doubles end at 0.25.
 SETTLED = 0.12
-"""The last multiplier must be below this for its share to be near the limit; at r = 4/5 doubles end at 0.25."""
 
 
 @cache

@@ -16,8 +16,7 @@ from singimpact.oscillator.model import Oscillator
 from singimpact.paper.claims.claim import Check, Statement, claim_beyond
 from singimpact.paper.claims.verifiers import every
 
-BEFORE = 2
-"""A phase with a_c < 0 between the zero before tau_* and tau_*, at c = 0.3 and at c = 1."""
+BEFORE = 2  # a phase with a_c < 0 between the zero before tau_* and tau_*, at c = 0.3 and at c = 1
 
 
 class Stated(NamedTuple):

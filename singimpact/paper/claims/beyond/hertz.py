@@ -16,8 +16,8 @@ from singimpact.algebra.certificates import positive_in
 from singimpact.algebra.derivations import At, substitution
 from singimpact.paper.claims.beyond.every_order import CLOSED_P, CLOSED_Q, L, closed_forms, ell, j
 from singimpact.paper.claims.claim import Check, Statement, claim_beyond
-from singimpact.paper.claims.verifiers import every, same, sample
-from singimpact.paper.trials.hertz_orbits import POWERS, STARTS, Measured, measured
+from singimpact.paper.claims.verifiers import Finding, every, measured_on, same, sample
+from singimpact.paper.trials.hertz_orbits import POWERS, STARTS, Measured, Start, measured
 
 q, e, rate, exponent = sympy.symbols("q e x N")
 WITHIN = 0.15  # of the second term of gamma; what is left out has the part P = v/(b h^(j+1)) <= 1/60 of it, times 5
@@ -164,32 +164,26 @@ def _left(stated: Any) -> Check:
 
 def _found(stated: tuple[Any, Any, Any]) -> Check:
     """(N, K, G) against gamma of true orbits, at two distances: v/(w h^N) - 1 = G P."""
-    stated_n, factor, second = stated
-    checks, worst = [], dict[str, str]()
-    for start in STARTS:
-        findings = []
-        for power in POWERS:
-            widths_ = measured(start, power)
-            values = {j: start.order, q: sympy.Rational(power.numerator, power.denominator)}
-            n, k, g = (float(within.subs(values)) for within in (stated_n, factor, second))
-            off = _beside(widths_, start.order, power, (n, k))
-            near = all(
-                abs(ratio - g * within) < WITHIN * abs(g) * within + 2 * width
-                for (ratio, within), width in zip(off, widths_.widths, strict=True)
-            )
-            findings.append((f"{widths_.exponent:.3f} for {n:.3f} at q = {power}", near))
-            if not near:
-                worst = {"model": start.name, "q": str(power), "v/(w h^N) - 1": f"{off[1][0]:.6f}"}
-        words = ", ".join(within for within, _ in findings)
-        checks.append((f"{start.name}, j = {start.order}: slopes {words}", all(holds for _, holds in findings)))
-    return every(checks, "supported", witness=lambda: worst)
+
+    def slope(start: Start, power: Fraction) -> Finding:
+        curve, values = measured(start, power), {j: start.order, q: sympy.Rational(power.numerator, power.denominator)}
+        n, k, g = (float(formula.subs(values)) for formula in stated)
+        off = _beside(curve, start.order, power, (n, k))
+        near = all(
+            abs(ratio - g * term) < WITHIN * abs(g) * term + 2 * width
+            for (ratio, term), width in zip(off, curve.widths, strict=True)
+        )
+        numbers = {"model": start.name, "q": str(power), "v/(w h^N) - 1": f"{off[1][0]:.6f}"}
+        return f"{curve.exponent:.3f} for {n:.3f} at q = {power}", near, numbers
+
+    return measured_on(STARTS, POWERS, slope, lambda start, words: f"{start.name}, j = {start.order}: slopes {words}")
 
 
-def _beside(found: Measured, order: int, power: Fraction, law: tuple[float, float]) -> list[tuple[float, float]]:
-    """At both distances h: v/(w h^N) - 1, and v/h^(j+1)."""
+def _beside(curve: Measured, order: int, power: Fraction, law: tuple[float, float]) -> list[tuple[float, float]]:
+    """At both distances h: v/(w h^N) - 1, and v/h^(j+1); of a law (N, K)."""
     n, k = law
-    w = (k * found.loss) ** (1 / (1 - float(power)))
-    pairs = zip(found.distances, found.speeds, strict=True)
+    w = (k * curve.loss) ** (1 / (1 - float(power)))
+    pairs = zip(curve.distances, curve.speeds, strict=True)
     return [(v / (w * h**n) - 1, v / h ** (order + 1)) for h, v in pairs]
 
 

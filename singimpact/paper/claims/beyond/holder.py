@@ -6,8 +6,8 @@ import sympy
 
 from singimpact.paper.claims.beyond.every_order import j, rising
 from singimpact.paper.claims.claim import Check, Statement, claim_beyond
-from singimpact.paper.claims.verifiers import every, same
-from singimpact.paper.trials.orbits_beside_gamma import RATES, STARTS, beside
+from singimpact.paper.claims.verifiers import Finding, every, measured_on, same
+from singimpact.paper.trials.orbits_beside_gamma import RATES, STARTS, Start, beside
 
 lam, mu = sympy.symbols("lambda mu")
 EXPONENT = sympy.log(1 / lam) / sympy.log(mu)
@@ -49,34 +49,26 @@ def _fails(p: int, q: int, s: int) -> dict[str, str]:
 
 def _slopes(stated: Any) -> Check:
     """The exponent of delta, in lambda and mu, on true orbits."""
-    checks, worst = [], dict[str, str]()
-    for start in STARTS:
-        findings = []
-        for rate in RATES:
-            orbits = beside(start, rate)
-            wanted = float(sympy.sympify(stated).subs({lam: orbits.lambda_, mu: orbits.mu}))
-            findings.append((f"{orbits.slope:.5f} at r = {rate}", abs(orbits.slope - wanted) < NEAR))
-            if not findings[-1][1]:
-                worst = {"model": start.name, "r": rate, "found": f"{orbits.slope:.6f}", "stated": f"{wanted:.6f}"}
-        words = ", ".join(within for within, _ in findings)
-        checks.append((f"{start.name}, j = {start.order}: slopes {words}", all(holds for _, holds in findings)))
-    return every(checks, "supported", witness=lambda: worst)
+
+    def slope(start: Start, rate: str) -> Finding:
+        orbits = beside(start, rate)
+        wanted = float(sympy.sympify(stated).subs({lam: orbits.lambda_, mu: orbits.mu}))
+        numbers = {"model": start.name, "r": rate, "found": f"{orbits.slope:.6f}", "stated": f"{wanted:.6f}"}
+        return f"{orbits.slope:.5f} at r = {rate}", abs(orbits.slope - wanted) < NEAR, numbers
+
+    return measured_on(STARTS, RATES, slope, lambda start, words: f"{start.name}, j = {start.order}: slopes {words}")
 
 
 def _counts(stated: int) -> Check:
     """The number of additional impacts when delta is divided by mu."""
-    checks, worst = [], dict[str, str]()
-    for start in STARTS:
-        findings = []
-        for rate in RATES:
-            orbits = beside(start, rate)
-            more = orbits.impacts[1] - orbits.impacts[0]
-            findings.append((f"{more} for mu^{orbits.steps} at r = {rate}", more == stated * orbits.steps))
-            if not findings[-1][1]:
-                worst = {"model": start.name, "r": rate, "impacts": str(more), "stated": str(stated * orbits.steps)}
-        words = ", ".join(within for within, _ in findings)
-        checks.append((f"{start.name}: more impacts, {words}", all(holds for _, holds in findings)))
-    return every(checks, "supported", witness=lambda: worst)
+
+    def count(start: Start, rate: str) -> Finding:
+        orbits = beside(start, rate)
+        more, wanted = orbits.impacts[1] - orbits.impacts[0], stated * orbits.steps
+        numbers = {"model": start.name, "r": rate, "impacts": str(more), "stated": str(wanted)}
+        return f"{more} for mu^{orbits.steps} at r = {rate}", more == wanted, numbers
+
+    return measured_on(STARTS, RATES, count, lambda start, words: f"{start.name}: more impacts, {words}")
 
 
 CLAIMS = (

@@ -21,8 +21,8 @@ from singimpact.paper.claims.claim import Check, Statement, claim_beyond
 from singimpact.paper.claims.verifiers import every
 
 DIGITS = 30
+# Impacts farther than this from the saddle, in tau or in v, are those of the excursion; the others are within 0.07.
 NEAR = Fraction(1, 10)
-"""Impacts farther than this from the saddle, in tau or in v, are those of the excursion; the others are within 0.07."""
 
 
 class Stated(NamedTuple):

@@ -13,13 +13,14 @@ import sympy
 from singimpact.algebra.certificates import positive_in, positive_on
 from singimpact.algebra.derivations import At, motion, substitution
 from singimpact.paper.claims.claim import Check, Statement, claim_beyond
-from singimpact.paper.claims.verifiers import every, is_zero, same
+from singimpact.paper.claims.verifiers import Finding, every, is_zero, measured_on, same
 from singimpact.paper.trials.loop_heights import (
     GENERATIONS,
     LINES,
     PHASES,
     RATES,
     SWANS,
+    Swan,
     feet_beside_gamma,
     generations,
     heights,
@@ -123,24 +124,19 @@ def _falls() -> bool:
 
 def _crossings(stated: tuple[Any, Any]) -> Check:
     """(outer start, polynomial of the inner one): heights on true orbits differ from the stated ones by O(h)."""
-    checks, worst = [], dict[str, str]()
-    for swan in SWANS:
-        findings = []
-        for rate in RATES:
-            loops = heights(swan, rate)
-            starts = _starts(stated, rate)
-            predicted = np.array(
-                [generation for start in starts for generation in generations(start, float(sympy.Rational(rate)))]
-            )
-            errors = np.array(loops.found) - predicted
-            orders = np.log(np.abs(errors[0] / errors[1])) / log(LINES[0] / LINES[1])
-            holds = bool(np.all(np.abs(orders - 1) < ORDER)) and loops.left < 1e-12
-            findings.append((f"{orders.min():.3f} to {orders.max():.3f} at r = {rate}", holds))
-            if not holds:
-                worst = {"model": swan.name, "r": rate, "w": _numbers(loops.found[1]), "stated": _numbers(predicted)}
-        words = ", ".join(within for within, _ in findings)
-        checks.append((f"{swan.name}: {2 * GENERATIONS} crossings, orders {words}", all(good for _, good in findings)))
-    return every(checks, "supported", witness=lambda: worst)
+
+    def order(swan: Swan, rate: str) -> Finding:
+        loops, ratio = heights(swan, rate), float(sympy.Rational(rate))
+        predicted = np.array([height for start in _starts(stated, rate) for height in generations(start, ratio)])
+        errors = np.array(loops.found) - predicted
+        orders = np.log(np.abs(errors[0] / errors[1])) / log(LINES[0] / LINES[1])
+        holds = bool(np.all(np.abs(orders - 1) < ORDER)) and loops.left < 1e-12
+        numbers = {"model": swan.name, "r": rate, "w": _numbers(loops.found[1]), "stated": _numbers(predicted)}
+        return f"{orders.min():.3f} to {orders.max():.3f} at r = {rate}", holds, numbers
+
+    return measured_on(
+        SWANS, RATES, order, lambda swan, words: f"{swan.name}: {2 * GENERATIONS} crossings, orders {words}"
+    )
 
 
 def _starts(stated: tuple[Any, Any], rate: str) -> list[float]:
@@ -157,22 +153,18 @@ def _numbers(values: Any) -> str:
 
 def _law(stated: Any) -> Check:
     """By which factor, in lambda and mu, foot - X changes where delta is divided by mu, in the limit."""
-    checks, worst = [], dict[str, str]()
-    for swan in SWANS:
-        findings = []
-        for rate in RATES:
-            feet = feet_beside_gamma(swan, rate)
-            wanted = float(sympy.sympify(stated).subs({lam: feet.lambda_, mu: feet.mu}))
-            rows = np.array(feet.offsets)
-            ratios = rows[1:] / rows[:-1]
-            off = np.abs(ratios / wanted - 1)
-            holds = bool(np.all(off < NEAR) and np.all(off[1] < off[0]) and (rows[0] > 0).any() and (rows[0] < 0).any())
-            findings.append((f"{ratios[-1].min():.5f} to {ratios[-1].max():.5f} at r = {rate}", holds))
-            if not holds:
-                worst = {"model": swan.name, "r": rate, "found": _numbers(ratios[-1]), "stated": f"{wanted:.6f}"}
-        words = ", ".join(within for within, _ in findings)
-        checks.append((f"{swan.name}: ratios at {len(PHASES)} phases {words}", all(good for _, good in findings)))
-    return every(checks, "supported", witness=lambda: worst)
+
+    def ratio(swan: Swan, rate: str) -> Finding:
+        feet = feet_beside_gamma(swan, rate)
+        wanted = float(sympy.sympify(stated).subs({lam: feet.lambda_, mu: feet.mu}))
+        rows = np.array(feet.offsets)
+        ratios = rows[1:] / rows[:-1]
+        off = np.abs(ratios / wanted - 1)
+        holds = bool(np.all(off < NEAR) and np.all(off[1] < off[0]) and (rows[0] > 0).any() and (rows[0] < 0).any())
+        numbers = {"model": swan.name, "r": rate, "found": _numbers(ratios[-1]), "stated": f"{wanted:.6f}"}
+        return f"{ratios[-1].min():.5f} to {ratios[-1].max():.5f} at r = {rate}", holds, numbers
+
+    return measured_on(SWANS, RATES, ratio, lambda swan, words: f"{swan.name}: ratios at {len(PHASES)} phases {words}")
 
 
 HALF, TEAR = sympy.Rational(1, 2), sympy.Rational(3, 8)

@@ -31,11 +31,6 @@ def _smooth(exceptions: Any) -> Check:
     again = {s: 2 * sympy.pi}
     exists = all(expression.subs(again) == 0 for expression in (height, sympy.diff(height, s), by_v))
 
-    def trial() -> tuple[str, bool]:
-        found = surfaces.gradients()
-        name = f"x_tau = x-dot - v x_c - A x_v at {len(found)} points of V_c on two models"
-        return name, max(case.identity_error for case in found) < 1e-6
-
     return every(
         [
             (
@@ -47,7 +42,7 @@ def _smooth(exceptions: Any) -> Check:
             ("there are such points: x'' + x = 1 + c, from rest, at t = 2 pi", exists),
         ],
         witness=lambda: {"model": "x'' + x = 1 + c", "v": "0", "t": "2 pi", "gradient": "0"},
-        tried=trial,
+        tried=surfaces.gradients,
     )
 
 
@@ -140,20 +135,14 @@ def _phi_fold(condition: Any) -> Check:
     chart; E = a_c at the landing, x = c and x-dot = 0, and iota makes the landing the launch.
     """
     bend = variations.second_derivative().subs(variations.E, a)
-
-    def trial() -> tuple[str, bool]:
-        found = surfaces.zero_set_points()
-        worst = max(abs(case.second / case.expected - 1) for case in found)
-        return f"at {len(found)} points of Z on two models it is -a_c(tau)/(t dy/dv) (to {worst:.0e})", worst < 1e-4
-
     return every(
         [
             (
                 f"the second derivative along the kernel is {bend} over x_v, or over x_tau: not 0 where a is not",
                 _same_zeros(condition, bend),
-            ),
+            )
         ],
-        tried=trial,
+        tried=surfaces.zero_set_points,
     )
 
 
@@ -202,23 +191,6 @@ def _lift_off(level: Any) -> Check:
     c = sympy.Symbol("c")
     height = sympy.expand(c + t * route.y_c(2).subs({sigma: 0, v: 0}))
     start, bend = height.coeff(t, 0), height.coeff(t, 2)
-
-    def trial() -> tuple[str, bool]:
-        case = surfaces.pressed_point()
-        name = (
-            f"at a point with a = {case.acceleration:.3g} < 0 and c = {case.clearance:.3g} the free flight has x_c > 0 and "
-            "x_c < c for small t: the mass cannot follow it"
-        )
-        return name, case.above_zero and case.below_c
-
-    def witness() -> dict[str, str]:
-        case = surfaces.pressed_point()
-        return {
-            "c": f"{case.clearance:.3g}",
-            "a": f"{case.acceleration:.6g}",
-            "x_c at t = 0.01": f"{case.height:.9f}",
-        }
-
     return every(
         [
             (
@@ -226,8 +198,8 @@ def _lift_off(level: Any) -> Check:
                 is_zero(start - level) and is_zero(bend - a / 2),
             )
         ],
-        tried=trial,
-        witness=witness,
+        tried=lambda: surfaces.pressed_point()[0],
+        witness=lambda: surfaces.pressed_point()[1],
     )
 
 
@@ -253,15 +225,6 @@ def _discontinuity(condition: Any) -> Check:
     height = t * route.y_c(3)
     start = (height / t).subs(t, 0)
     derived = variations.singular_p()[0]
-
-    def trial() -> tuple[str, bool]:
-        found = surfaces.jumps_are_grazes()
-        name = (
-            f"{found.count} jumps of F located on {found.lines} lines of two models, each with |x-dot| at the first touch "
-            f"below {found.worst:.0e}"
-        )
-        return name, found.count >= 5 and found.worst < 1e-3
-
     return every(
         [
             (
@@ -270,7 +233,7 @@ def _discontinuity(condition: Any) -> Check:
                 is_zero(start - v) and _same_zeros(condition, derived),
             ),
         ],
-        tried=trial,
+        tried=surfaces.jumps_are_grazes,
     )
 
 
@@ -284,12 +247,6 @@ def _corresponding(stated: tuple[bool, bool]) -> Check:
     exchanged = _same_zeros(off_phi, v) and _same_zeros(off_p, variations.u)
     launch, landing = surfaces.exact_sheet(v * t + t**2 / 2)
     empty = sympy.Poly(landing, t).monoms() == [(1,)]  # x-dot = t/2 on V_c': 0 at t = 0 alone, where a = 1
-
-    def trial() -> tuple[str, bool]:
-        touched = surfaces.horizon_images()
-        name = f"phi takes {touched.count} points of H on two models to |v| <= {touched.worst:.0e}"
-        return name, touched.worst < 1e-9
-
     return every(
         [
             ("iota exchanges v = 0 and x-dot = 0 off t = 0, and phi = p o iota", exchanged),
@@ -304,7 +261,7 @@ def _corresponding(stated: tuple[bool, bool]) -> Check:
             "point of Z": "(tau, 0; 0)",
             "its image under phi": "(tau, 0), not in P_c",
         },
-        tried=trial,
+        tried=surfaces.horizon_images,
     )
 
 
@@ -321,12 +278,6 @@ def _preimages(stated: tuple[bool, bool]) -> Check:
     touches = sympy.gcd(sympy.cancel(height / t**2), sympy.cancel(sympy.diff(height, t) / t))
     alone = height.subs(back) == 0 and lands != 0 and touches == 1 and sympy.diff(height, t, 2).subs(t, 0) != 0
     surfaces.exact_sheet(v * t + t**2 - t**3)
-
-    def trial() -> tuple[str, bool]:
-        found = surfaces.common_orbits()
-        name = f"{found.count} flights of two models: p(z) and phi(z) on one orbit to {found.worst:.0e}"
-        return name, found.worst < 1e-9
-
     return every(
         [
             (
@@ -335,7 +286,7 @@ def _preimages(stated: tuple[bool, bool]) -> Check:
             ),
             (f"from rest {height} lands with x-dot = {lands} and touches c at rest at t = 0 alone", alone),
         ],
-        tried=trial,
+        tried=surfaces.common_orbits,
     )
 
 
@@ -348,22 +299,6 @@ def _semiconjugacy(crossings: Any) -> Check:
     times = sorted(sympy.roots(sympy.Poly(sympy.cancel(height / t), t)))
     states = [(time, sympy.diff(height, t).subs(t, time)) for time in times]
     surfaces.exact_sheet(v * t - 3 * t**2 + t**3)
-
-    def trial() -> tuple[str, bool]:
-        found = surfaces.semiconjugacy()
-        name = f"at {found.visible} first hits of two models G(p(z)) = R(phi(z)) to {found.worst:.0e}, at later crossings not"
-        return name, found.worst < 1e-9 and found.least_miss > 1e-3
-
-    def witness() -> dict[str, str]:
-        found = surfaces.semiconjugacy()
-        return {
-            "model": found.name,
-            "tau": f"{found.tau:.6f}",
-            "v": f"{found.v:.6f}",
-            "t of a later crossing": f"{found.later:.6f}",
-            "first hit": f"{found.first:.6f}",
-        }
-
     return every(
         [
             (
@@ -372,8 +307,8 @@ def _semiconjugacy(crossings: Any) -> Check:
                 times == [1, 2] and states[0] != states[1] and crossings == 1,
             ),
         ],
-        witness=witness,
-        tried=trial,
+        tried=lambda: surfaces.semiconjugacy()[0],
+        witness=lambda: surfaces.semiconjugacy()[1],
     )
 
 

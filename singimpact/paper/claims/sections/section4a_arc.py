@@ -42,10 +42,6 @@ def _discontinuity(stated: tuple[Any, int]) -> Check:
         )
         return name, all(good) and all(case.count == 0 for case in far)
 
-    def witness() -> dict[str, str]:
-        case = arcs.jumps()[0]
-        return {"model": case.name, "v/(a' sigma^2) at the jump": f"{case.coefficient:.9f}"}
-
     return every(
         [
             (
@@ -55,7 +51,10 @@ def _discontinuity(stated: tuple[Any, int]) -> Check:
             ("for sigma >= 0 v_c < 0 for t > 0: no low-velocity hit there, and no jump", behind),
         ],
         tried=trial,
-        witness=witness,
+        witness=lambda: {
+            "model": arcs.jumps()[0].name,
+            "v/(a' sigma^2) at the jump": f"{arcs.jumps()[0].coefficient:.9f}",
+        },
     )
 
 
@@ -110,12 +109,6 @@ def _unique(stated: tuple[Any, int]) -> Check:
     )
     with_axis = bool(region.subs(v, 0)) and is_zero(fold.fixed_point_equation().subs(m, THREE_HALVES))
     arc_count = int(bool(region.subs(v, 1))) + int(with_axis)
-
-    def trial() -> tuple[str, bool]:
-        leaving = arcs.leaves_gamma()
-        name = f"true orbits beside gamma leave it on both models (v/gamma off by 1e-3 grows {leaving:.3g}-fold)"
-        return name, leaving > 10
-
     return every(
         [
             ("exactly one fixed ray m3 in (1/2, 3/2) for every r in (0, 1)", one),
@@ -130,7 +123,7 @@ def _unique(stated: tuple[Any, int]) -> Check:
             ),
         ],
         modulo=(orbits.STABLE,),
-        tried=trial,
+        tried=arcs.leaves_gamma,
         witness=lambda: {"arc": "{v = 0, tau < tau_*}", "v": "0", "invariant arcs found": str(arc_count)},
     )
 
@@ -175,22 +168,17 @@ def _repelling(stated: int) -> Check:
 def _at_rest(stated: Any) -> Check:
     """x_c - c on the motion from (tau_*, 0), to third order in t: 0 if w_* is fixed; a' t^3/6 lifts off."""
     leading = sympy.expand(t * route.at_contact(route.y_c(2), 1).subs({route.sigma: 0, route.v: 0}))
-
-    def trial() -> tuple[str, bool]:
-        flights = arcs.lift_off()
-        name = f"first hit from (tau_*, 0) after {flights[0][1]:.6f} ({flights[0][0]}): F(w_*) is not w_*"
-        return name, all(time > 0.5 for _, time in flights)
-
-    def witness() -> dict[str, str]:
-        model, time = arcs.lift_off()[0]
-        return {"model": model, "v": "0", "flight time from (tau_*, 0)": f"{time:.12g}"}
-
     return every(
-        [
-            (f"from w_* x_c - c = {leading} + ..., above 0 for a' > 0; stated: {stated}", same(leading, stated)),
-        ],
-        tried=trial,
-        witness=witness,
+        [(f"from w_* x_c - c = {leading} + ..., above 0 for a' > 0; stated: {stated}", same(leading, stated))],
+        tried=lambda: (
+            "first hit from (tau_*, 0) after {1:.6f} ({0}): F(w_*) is not w_*".format(*arcs.lift_off()[0]),
+            all(time > 0.5 for _, time in arcs.lift_off()),
+        ),
+        witness=lambda: {
+            "model": arcs.lift_off()[0][0],
+            "v": "0",
+            "flight time from (tau_*, 0)": f"{arcs.lift_off()[0][1]:.12g}",
+        },
     )
 
 
@@ -198,21 +186,14 @@ def _sides(stated: tuple[str, str]) -> Check:
     """(below, above) gamma: "chatter" to rest before tau_*, or "lost" contact after finitely many impacts."""
     behind, reason = orbits.after(1)
     proved = ("chatter", behind) if orbits.drift(1) == 1 else (behind, "chatter")
-
-    def trial() -> tuple[str, bool]:
-        found = arcs.sides()
-        shown = "; ".join(f"{case.name}: {case.line()}" for case in found)
-        return f"on true orbits, {shown}", all((case.below, case.above) == stated for case in found)
-
-    def witness() -> dict[str, str]:
-        case = arcs.sides()[0]
-        return {"model": case.name, "below": case.below, "above": case.above}
-
     return every(
         [*orbits.before(1), (reason[0], reason[1] and proved == stated)],
         modulo=(orbits.STABLE,),
-        tried=trial,
-        witness=witness,
+        tried=lambda: (
+            f"on true orbits, {'; '.join(f'{case.name}: {case.line()}' for case in arcs.sides())}",
+            all((case.below, case.above) == stated for case in arcs.sides()),
+        ),
+        witness=lambda: {"model": arcs.sides()[0].name, "below": arcs.sides()[0].below, "above": arcs.sides()[0].above},
     )
 
 

@@ -7,12 +7,12 @@ import sympy
 from singimpact.algebra.certificates import negative_on, positive_in, positive_on
 from singimpact.algebra.derivations import At, substitution
 from singimpact.paper.claims.claim import Check, Statement, in_section
-from singimpact.paper.claims.sections.section4b_trials import TRIALS as TRIALS
+from singimpact.paper.claims.sections.section4_trials import TRIALS as TRIALS
 from singimpact.paper.claims.verifiers import every, identity, is_zero, same
 from singimpact.paper.routes import fold, implicit as route
 from singimpact.paper.routes.fold import k
 from singimpact.paper.routes.implicit import X, Y, a_symbol, r, sigma, t
-from singimpact.paper.trials import leaves
+from singimpact.paper.trials import arcs
 from singimpact.theory.impact_sheet import generic_sheet
 
 ell, slope, mu, nu = sympy.symbols("ell p mu nu")
@@ -93,12 +93,6 @@ def _continuous(side: int) -> Check:
     rise = sympy.expand(sympy.diff(launch, t))
     edges = [{sigma: 1, t: 0}, {sigma: -1, t: 3}]
     bounds = all(is_zero(launch.subs(edge)) for edge in edges)
-
-    def trial() -> tuple[str, bool]:
-        found = leaves.no_jumps()
-        name = f"no jump of F among {found.states} neighbouring states on two models, largest step {found.largest:.1e}"
-        return name, found.largest < 0.05
-
     return every(
         [
             (f"v on the horizon is {height} k sigma^2 + O(3) with k < 0", height.is_positive and side == -1),
@@ -107,7 +101,7 @@ def _continuous(side: int) -> Check:
                 bounds and all(rise.subs(edge) > 0 for edge in edges) and sympy.Poly(rise, sigma, t).is_homogeneous,
             ),
         ],
-        tried=trial,
+        tried=arcs.no_jumps,
     )
 
 
@@ -184,11 +178,10 @@ def _range(stated: Any) -> Check:
     )
 
 
-SLACK = (1 - r) / 3
-"""By how much the bounds of p~ and q~ leave their limits, relative to these."""
+SLACK = (1 - r) / 3  # by how much the bounds of p~ and q~ leave their limits, relative to these
+# The paper's conditions on delta: K delta < FOR_K, L delta < FOR_L, where l mu sigma^3 and l nu sigma^3 are what p and
+# q leave out on a ray (s4b-rays), |mu| <= K, |nu| <= L.  As l -> 0 they tend to -k (1 - r) and -r k (1 - r), not to 0.
 FOR_K, FOR_L = (sympy.factor(part * SLACK) for part in (-k * (3 + ell), -r * k * (3 + 2 * ell) * (1 + ell)))
-"""The paper's conditions on delta: K delta < FOR_K, L delta < FOR_L, where l mu sigma^3 and l nu sigma^3 are what p and q
-leave out on a ray (s4b-rays), |mu| <= K, |nu| <= L.  As l -> 0 they tend to -k (1 - r) and -r k (1 - r), not to 0."""
 
 
 def _conditions(stated: tuple[Any, Any]) -> Check:

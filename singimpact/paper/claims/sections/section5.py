@@ -7,8 +7,8 @@ import sympy
 from singimpact.algebra.certificates import definite, negative_on, positive_on, roots_inside, value_at
 from singimpact.paper.claims.claim import Check, Statement, in_section
 from singimpact.paper.claims.sections import section4_orbits as orbits
+from singimpact.paper.claims.sections.section4_trials import TRIALS as TRIALS
 from singimpact.paper.claims.sections.section4a_arc import above_one, limit_in_words, on_gamma, rate_on_gamma
-from singimpact.paper.claims.sections.section5_trials import TRIALS as TRIALS
 from singimpact.paper.claims.verifiers import every, identity, is_zero
 from singimpact.paper.routes import swan
 from singimpact.paper.routes.implicit import r, v
@@ -163,17 +163,12 @@ def _smoothness(stated: int) -> Check:
     cubic = swan_velocity().subs(sigma, 0)
     power = min(degree for (degree,) in sympy.Poly(cubic, t).monoms())
     growing = _positive_slope(1).holds
-
-    def trial() -> tuple[str, bool]:
-        found = arcs.cube_root()
-        return f"true flights: t ~ v^{found:.4f} as v -> 0", abs(found - 1 / 3) < 1e-2
-
     return every(
         [
             (f"on sigma = 0 v = {cubic} + ..., so t ~ v^(1/{power}) and dt/dv is unbounded at w_*", power == stated),
             ("v_c grows with t near w_*, strictly off w_*: F is continuous there, and smooth elsewhere", growing),
         ],
-        tried=trial,
+        tried=lambda: (f"true flights: t ~ v^{arcs.cube_root():.4f} as v -> 0", abs(arcs.cube_root() - 1 / 3) < 1e-2),
         witness=lambda: {
             "sigma": "0",
             "exponent of v in the flight time": f"{arcs.cube_root():.4f}",
@@ -269,7 +264,7 @@ def _limit(stated: Any) -> Check:
     residual = stated**2 - matrix.trace() * stated + matrix.det()
 
     def trial() -> tuple[str, bool]:
-        orbit = arcs.eigenvalue().found
+        _, orbit = arcs.eigenvalue()
         value = float(sympy.N(stated.subs(lambda_, true_orbits.lambda_of(0.5, 2))))
         return f"true orbits give {orbit:.6f} at r = 1/2, the statement {value:.6f}", abs(orbit / value - 1) < REACHED
 
@@ -281,8 +276,8 @@ def _limit(stated: Any) -> Check:
         tried=trial,
         witness=lambda: {
             "r": "1/2",
-            "limit of the eigenvalue": f"{arcs.eigenvalue().expected:.15f}",
-            "found on true orbits": f"{arcs.eigenvalue().found:.6f}",
+            "limit of the eigenvalue": f"{arcs.eigenvalue()[0]:.15f}",
+            "found on true orbits": f"{arcs.eigenvalue()[1]:.6f}",
         },
     )
 
@@ -291,19 +286,10 @@ def _others(stated: str) -> Check:
     """Fates of launches near a swan with a'' < 0, below and above gamma: "chatter", or contact is "lost"."""
     behind, reason = orbits.after(2)
     below = "chatter" if orbits.drift(2) == 1 else behind
-
-    def trial() -> tuple[str, bool]:
-        found = arcs.fates()
-        name = (
-            f"{found.count} true orbits from states near w_*, below and above gamma on two models, all come to rest at "
-            f"points with a < 0 (largest a there {found.largest:.1e})"
-        )
-        return name, found.largest < 0 and found.lost == 0
-
     return every(
         [*orbits.before(2), (reason[0], reason[1] and {below, behind} == {stated})],
         modulo=(orbits.STABLE,),
-        tried=trial,
+        tried=arcs.fates,
     )
 
 

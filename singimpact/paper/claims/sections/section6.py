@@ -1,5 +1,6 @@
 """Section 6: the unfolded swan, in its universal model x'' = 12 kappa (t^2 - 1); kappa > 0 positive, < 0 negative."""
 
+from fractions import Fraction
 from math import factorial
 from typing import Any
 
@@ -8,17 +9,19 @@ import sympy
 from singimpact.algebra.certificates import definite, positive_on
 from singimpact.algebra.derivations import At, substitution
 from singimpact.contact.points import tangency_points
+from singimpact.contact.swans import swan_points_over_clearance
 from singimpact.impact_oscillator import linear
-from singimpact.paper.claims.claim import Check, Statement, in_section
+from singimpact.oscillator.model import Oscillator
+from singimpact.paper.claims.claim import Check, Statement, Trial, Trials, at_each, in_section
 from singimpact.paper.claims.sections.section6_exact import epsilon_check
 from singimpact.paper.claims.sections.section6_scaling import at, crossing, near_the_swan, regular_conic, scaling_check
-from singimpact.paper.claims.sections.section6_trials import TRIALS as TRIALS
 from singimpact.paper.claims.verifiers import every, is_zero, same
-from singimpact.paper.routes import scaling, unfolding as model
+from singimpact.paper.routes import unfolding as model
 from singimpact.paper.routes.implicit import v_c_swan
-from singimpact.paper.routes.scaling import WEIGHTS, Weights
-from singimpact.paper.routes.unfolding import kappa, sigma, t
+from singimpact.paper.routes.unfolding import WEIGHTS, Weights, kappa, sigma, t
+from singimpact.paper.trials import true_orbits
 from singimpact.paper.trials.enclosed_swan import LAST, bracket
+from singimpact.paper.trials.true_sheet import Place, swans
 
 SQRT3 = sympy.sqrt(3)
 RATES = ("1/10", "1/2", "7/10", "9/10")  # of restitution, at which the end of gamma is enclosed
@@ -125,7 +128,7 @@ def _second_derivative(order: int) -> Check:
 
 def _none(sign: int) -> Check:
     """v for a positive swan before the zeros are born: a = 12 kappa (sigma^2 + e), e >= 0."""
-    form = sympy.Poly(sympy.expand(sympy.cancel(-scaling.limit_launch() / (kappa * t))), scaling.e)
+    form = sympy.Poly(sympy.expand(sympy.cancel(-model.limit_launch() / (kappa * t))), model.e)
     slope, rest = form.nth(1), form.nth(0)
     positive = definite(rest, sigma, t) == 1 and slope.is_positive and form.degree() == 1
     check = every(
@@ -275,8 +278,48 @@ def _gamma(stated: tuple[tuple[str, ...], tuple[Any, Any]]) -> Check:
 
 def _universal(middle: int) -> Any:
     """-kappa t (6 sigma^2 + 6 e + middle sigma t + t^2)."""
-    return -kappa * t * (6 * sigma**2 + 6 * scaling.e + middle * sigma * t + t**2)
+    return -kappa * t * (6 * sigma**2 + 6 * model.e + middle * sigma * t + t**2)
 
+
+# What is printed and what is corrected, tried on the unfolded swans of two models.
+
+STEP = Fraction(1, 100)  # of the clearance, from c_0
+
+
+def _side_tried(place: Place, *sides: int) -> Trial:
+    """The side of c_0 on which a_c has two zeros near a negative swan."""
+    centre = Fraction(float(place.model.replace().clearance.value))  # type: ignore[union-attr]
+    counts = [len(tangency_points(place.model.replace(clearance=centre + sign * STEP))) for sign in (-1, 1)]
+    side = {(2, 0): -1, (0, 2): 1}.get((counts[0], counts[1]), 0)
+    text = f"{counts[0]} for c < c_0, {counts[1]} for c > c_0 = {float(centre):.8g}"
+    says = [f"2 for c {'>' if sign > 0 else '<'} c_0" for sign in sides]
+    return Trial(place.name, "zeros of a_c", text, says[0], says[1], side == sides[0], side == sides[1])
+
+
+def _derivative_tried(place: Place, *orders: int) -> Trial:
+    """The derivative of a_c0 that is to tell the sign of a swan: it must not vanish at tau_*."""
+    values = [float(place.model.acceleration(place.tau, order=order)) for order in orders]
+    says = [f"a{chr(39) * order} = {value:.6g}" for order, value in zip(orders, values, strict=True)]
+    holds = [abs(value) > 1e-6 for value in values]
+    return Trial(place.name, "a negative swan, told by its sign", "a sign", says[0], says[1], holds[0], holds[1])
+
+
+def _signs_tried(named: tuple[str, Oscillator], printed: tuple[int, int], corrected: tuple[int, int]) -> Trial:
+    """Signs of a' at the two zeros of a_c that a positive swan gives birth to."""
+    name, model = named
+    swan = next(p for p in swan_points_over_clearance(model, (Fraction(-2), Fraction(2))) if p.kind == "positive")
+    unfolded = model.replace(clearance=Fraction(swan.clearance) + STEP)
+    near = [point for point in tangency_points(unfolded) if abs(point.tau - swan.tau) < 0.5]
+    signs = tuple(1 if point.kind == "gamma" else -1 for point in near)
+    says = str(printed), str(corrected)
+    return Trial(name, "signs of a' at A and B", str(signs), *says, signs == printed, signs == corrected)
+
+
+TRIALS: dict[str, Trials] = {
+    "s6-c-side": at_each(swans, _side_tried),
+    "s6-a0-typo": at_each(swans, _derivative_tried),
+    "s6p-AB": at_each(true_orbits.MODELS.items, _signs_tried),
+}
 
 claim_6 = in_section("6")
 

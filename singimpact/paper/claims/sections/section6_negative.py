@@ -6,7 +6,7 @@ import sympy
 
 from singimpact.algebra.certificates import negative_on
 from singimpact.paper.claims.claim import Check, Statement
-from singimpact.paper.claims.sections.section6 import claim_6
+from singimpact.paper.claims.sections.section6 import TRIALS as TRIALS, claim_6
 from singimpact.paper.claims.sections.section6_exact import (
     ADCBA,
     chatter_check,
@@ -14,7 +14,6 @@ from singimpact.paper.claims.sections.section6_exact import (
     visible_check,
 )
 from singimpact.paper.claims.sections.section6_scaling import at, near_the_swan
-from singimpact.paper.claims.sections.section6_trials import TRIALS as TRIALS
 from singimpact.paper.claims.verifiers import every, is_zero, same
 from singimpact.paper.routes import unfolding as model
 from singimpact.paper.routes.unfolding import kappa, sigma, t, u

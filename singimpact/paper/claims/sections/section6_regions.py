@@ -7,15 +7,13 @@ import sympy
 
 from singimpact.algebra.derivations import At, substitution
 from singimpact.paper.claims.claim import Check, Statement
-from singimpact.paper.claims.sections.section6 import claim_6
+from singimpact.paper.claims.sections.section6 import TRIALS as TRIALS, claim_6
 from singimpact.paper.claims.sections.section6_negative import cusp_above
 from singimpact.paper.claims.sections.section6_scaling import crossing, near_the_swan
 from singimpact.paper.claims.verifiers import every, is_zero, same
-from singimpact.paper.routes import scaling, unfolding as model
+from singimpact.paper.routes import unfolding as model
 from singimpact.paper.routes.unfolding import kappa, sigma, t
 from singimpact.paper.trials import universal_orbits
-
-TRIALS: dict[str, Any] = {}
 
 
 def _over(conic: Any, direction: Any, ends: tuple[tuple[Any, Any], tuple[Any, Any]]) -> bool:
@@ -93,7 +91,7 @@ def _swallowtail(stated: dict[int, tuple[int, int]]) -> Check:
     the plane of flights the curve has the direction of T - s everywhere, and stops where a(s) = 0.
     """
     s, other = sympy.symbols("s s_2")
-    pressed = scaling.limit_acceleration().subs(sigma, s)
+    pressed = model.limit_acceleration().subs(sigma, s)
     falling = sympy.Poly(pressed * (t - s), s).terms()
     rest = -sympy.Add(*(value * s ** (n + 1) / (n + 1) for (n,), value in falling))
     flat, steep = (sympy.Poly(rest, t).nth(power) for power in (0, 1))
@@ -101,15 +99,15 @@ def _swallowtail(stated: dict[int, tuple[int, int]]) -> Check:
     meeting = sympy.factor_list(sympy.resultant(*chords, other), s)[1]
     counts = {}
     for sign in (1, -1):
-        cusps = sympy.Poly(pressed.subs({kappa: 1, scaling.e: sign}), s).real_roots()
+        cusps = sympy.Poly(pressed.subs({kappa: 1, model.e: sign}), s).real_roots()
         apart = [
             root
             for factor, _ in meeting
-            for root in sympy.Poly(factor.subs({kappa: 1, scaling.e: sign}), s).real_roots()
+            for root in sympy.Poly(factor.subs({kappa: 1, model.e: sign}), s).real_roots()
             if root not in cusps
         ]
         counts[sign] = (len(cusps), len(apart) // 2)
-    doubled = -3 * scaling.e  # s^2 at the crossing, whose other flight is that from -s
+    doubled = -3 * model.e  # s^2 at the crossing, whose other flight is that from -s
     substitution(At(steep, {s: -s}), -steep)
     square = sympy.Symbol("s_s")
     substitution(At(sympy.cancel(steep / s).subs(s**2, square), {square: doubled}), 0)
@@ -127,7 +125,7 @@ def _swallowtail(stated: dict[int, tuple[int, int]]) -> Check:
             ),
         ]
     )
-    at_crossing = [(f"a at s^2 = {doubled}", sympy.expand(pressed.subs({s: sympy.sqrt(3), scaling.e: -1})))]
+    at_crossing = [(f"a at s^2 = {doubled}", sympy.expand(pressed.subs({s: sympy.sqrt(3), model.e: -1})))]
     return near_the_swan(check, [*_tangencies(), *at_crossing])
 
 

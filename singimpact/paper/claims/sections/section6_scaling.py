@@ -15,9 +15,8 @@ import sympy
 from singimpact.algebra.certificates import definite
 from singimpact.paper.claims.claim import Check
 from singimpact.paper.claims.verifiers import every, same
-from singimpact.paper.routes import scaling, unfolding as model
-from singimpact.paper.routes.scaling import Weights
-from singimpact.paper.routes.unfolding import kappa, sigma, t
+from singimpact.paper.routes import unfolding as model
+from singimpact.paper.routes.unfolding import Weights, kappa, sigma, t
 
 Named = Sequence[tuple[str, Any]]
 
@@ -76,21 +75,21 @@ def scaling_check(stated: tuple[Weights, Any]) -> Check:
     """The powers of H, and the launch velocity to which that of any oscillator tends, as a polynomial in (sigma, t, e)."""
     weights, leading = stated
     try:
-        limit, rest = scaling.scaled(weights)
-        near = scaling.leading_launch(weights)
+        limit, rest = model.scaled(weights)
+        near = model.leading_launch(weights)
     except ArithmeticError as error:
         return Check(False, "proved", str(error), {"weights": str(tuple(weights))})
-    height = scaling.y * t - t * scaling.limit_launch()  # of the model, at t: x - c = t (x' - v) for the launch x'
+    height = model.y * t - t * model.limit_launch()  # of the model, at t: x - c = t (x' - v) for the launch x'
     checks = every(
         [
             (
                 f"x'' = {limit} + H ({rest}) in scaled lengths, with smooth functions alpha, phi_1, phi_2: smooth at H = 0",
-                limit == scaling.limit_acceleration() and sympy.sympify(rest).is_polynomial(scaling.H),
+                limit == model.limit_acceleration() and sympy.sympify(rest).is_polynomial(model.H),
             ),
-            (f"the model's launch velocity is {sympy.factor(leading)}", same(leading, scaling.limit_launch())),
+            (f"the model's launch velocity is {sympy.factor(leading)}", same(leading, model.limit_launch())),
             ("it is the leading part of v_c of any oscillator, to all jets", same(near, leading)),
         ],
         witness=lambda: {"kappa": "1", "limit": str(limit), "v": str(sympy.factor(near))},
     )
-    slope = sympy.diff(sympy.cancel(height / t), scaling.y)
+    slope = sympy.diff(sympy.cancel(height / t), model.y)
     return near_the_swan(checks, [("dy/dv of y = (x - c)/t in the model, at every time", slope)])

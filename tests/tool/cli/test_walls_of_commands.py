@@ -18,7 +18,7 @@ WALLS = [
     "--upper-restitution",
     "0.7",
 ]
-PAIR = si.linear("2.8", "-0.5", "0.8", upper="0.5", upper_restitution="0.7")
+PAIR = si.linear("2.8", "-0.5", "0.8", upper=("0.5", "0.7"))
 
 
 @pytest.mark.parametrize("wall", ["lower", "upper"])
