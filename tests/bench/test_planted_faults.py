@@ -197,9 +197,9 @@ def _forgotten():
 
 def one_lane(true):
     def iterate(*given):
-        tau, v, codes = true(*given)
+        tau, v, codes, sides = true(*given)
         tau[5::64] += 1e-9
-        return tau, v, codes
+        return tau, v, codes, sides
 
     return iterate
 
@@ -210,7 +210,7 @@ def missed_grazes(true):
     def iterate(self, tau, v, impacts):
         ends = [true(self, tau, v * (1 + part), impacts) for part in (0.0, -1e-5, 1e-5)]
         later = np.argmax([end[0] for end in ends], axis=0)
-        return tuple(np.choose(later, [end[row] for end in ends]) for row in range(3))
+        return tuple(np.choose(later, [end[row] for end in ends]) for row in range(4))
 
     return iterate
 
