@@ -220,7 +220,7 @@ def series(quantity: str, end: int, order: int, at: str | int = "tangency") -> S
     with series_of_any_length():
         rate = (_at_zero if end == 0 else _at_one)(j, order + 1)
         if quantity == "mu":
-            return _numbers(_mu(j, rate, end), order + 1)
+            return _numbers(_mu(j, rate, end, order), order + 1)
         return _numbers(rate + fmpq_series([OFFSETS[quantity]], prec=order + 2), order + 1)
 
 
@@ -254,11 +254,11 @@ def _at_one(j: int, order: int) -> fmpq_series:
     return 1 - (1 - rate).reversion()
 
 
-def _mu(j: int, rate: fmpq_series, end: int) -> fmpq_series:
+def _mu(j: int, rate: fmpq_series, end: int, order: int) -> fmpq_series:
     """(P/Q)^2/lambda along a series of lambda; at r = 0 times w."""
     p, q = (
         sum((fmpq_series([c]) * rate**n for n, c in enumerate(_coefficients(part).coeffs())), 0 * rate)
         for part in (P(j), Q(j))
     )
-    below = fmpq_series(rate.coeffs()[1:], prec=rate.prec - 1) if end == 0 else rate
+    below = fmpq_series(rate.coeffs()[1:], prec=order + 1) if end == 0 else rate
     return p * p / (q * q * below)
