@@ -111,6 +111,20 @@ class Wall(IntEnum):
     upper = 1
 
 
+_WALLS: dict[object, int] = {name: wall for wall in Wall for name in (wall.name, wall.name[0], int(wall))}
+
+
+def wall_of(name: object) -> int:
+    """The wall of a name: "lower" or "upper", the first letter, 0 or 1; -1 of anything else.
+
+    Examples
+    --------
+    >>> [wall_of(name) for name in ("u", 0, "left", {})]
+    [<Wall.upper: 1>, <Wall.lower: 0>, -1, -1]
+    """
+    return _WALLS.get(name, -1) if isinstance(name, str | int | np.integer) else -1
+
+
 class StatusArray(np.ndarray[Any, Any]):
     """An int8 array of statuses that says in a notebook what its numbers mean; what is computed from it is plain.
 

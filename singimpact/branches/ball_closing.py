@@ -11,8 +11,6 @@ from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-import flint
-
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.expressions import Expression, evaluate, names_in, number
@@ -21,6 +19,7 @@ from singimpact.flights.enclosures.equation import programs_of
 from singimpact.flights.enclosures.jet_flight import JetHit, jet_hit
 from singimpact.flights.enclosures.timed_flight import Arrival, timed_flight, touches_first
 from singimpact.flights.horizons import horizon_of
+from singimpact.handed_on import flint
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import period_over
 

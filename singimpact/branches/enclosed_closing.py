@@ -12,7 +12,6 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from flint import arb
 
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.expressions import evaluate
@@ -22,6 +21,7 @@ from singimpact.algebra.precision import balls_at, series_of_any_length
 from singimpact.flights.enclosures.equation import Equation, Refused, programs_of
 from singimpact.flights.enclosures.motion import CarriedMotion, Met, Start
 from singimpact.flights.enclosures.tube import Tube, centre, divided, narrowed
+from singimpact.handed_on import flint
 from singimpact.oscillator.model import Oscillator
 
 BITS = 30
@@ -225,7 +225,7 @@ def _zeros(value: Tube, rate: Tube, length: Any, other: Callable[[Any], bool]) -
     """
     zeros: list[Any] = []
     left_out: list[Any] = []
-    stack, least = [(arb(0), length)], length * arb(2) ** -PIECES
+    stack, least = [(flint.arb(0), length)], length * flint.arb(2) ** -PIECES
     while stack:
         a, b = stack.pop()
         piece = a.union(b)

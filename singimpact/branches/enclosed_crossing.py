@@ -15,7 +15,6 @@ from fractions import Fraction
 from math import ceil, log
 from typing import Any, NamedTuple
 
-import flint
 import numpy as np
 
 from singimpact.algebra.balls import BITS_A_DIGIT
@@ -28,6 +27,7 @@ from singimpact.branches.saddle_cones import Cones, Pair, smooth
 from singimpact.dynamics.invariant_arcs import model_step
 from singimpact.flights.enclosures.certified_hit import ProvedImpact
 from singimpact.flights.enclosures.equation import Refused
+from singimpact.handed_on import flint
 from singimpact.oscillator.model import Oscillator
 
 

@@ -19,7 +19,6 @@ from fractions import Fraction
 from math import ceil
 from typing import Any, NamedTuple
 
-import flint
 import numpy as np
 
 from singimpact.algebra.balls import BITS_A_DIGIT, Balls, as_rational
@@ -30,6 +29,7 @@ from singimpact.branches.events.table import kind_of
 from singimpact.branches.krawczyk import KRAWCZYK, Krawczyk, Point
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.flights.enclosures.equation import Refused
+from singimpact.handed_on import flint
 from singimpact.oscillator.model import Oscillator
 from singimpact.result import Result, in_words
 

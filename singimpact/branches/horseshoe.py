@@ -21,7 +21,6 @@ from itertools import product, takewhile
 from math import ceil, sqrt
 from typing import Any, NamedTuple
 
-import flint
 import numpy as np
 
 from singimpact.algebra.balls import BITS_A_DIGIT, as_rational
@@ -34,6 +33,7 @@ from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.saddle_cones import Cones, Pair, derivative_over, image_of
 from singimpact.flights.derivative import derivative
 from singimpact.flights.enclosures.equation import Refused
+from singimpact.handed_on import flint
 from singimpact.oscillator.model import Oscillator
 from singimpact.result import Result
 

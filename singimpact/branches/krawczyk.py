@@ -14,7 +14,6 @@ from fractions import Fraction
 from math import ceil
 from typing import Any, Protocol
 
-import flint
 import numpy as np
 
 from singimpact.algebra.balls import BITS_A_DIGIT, Balls, as_rational
@@ -22,6 +21,7 @@ from singimpact.algebra.certified import Certified, from_ball
 from singimpact.algebra.precision import balls_at
 from singimpact.branches.ball_closing import BallClosing, return_slope
 from singimpact.flights.enclosures.equation import Refused
+from singimpact.handed_on import flint
 from singimpact.oscillator.model import Oscillator
 from singimpact.result import Result
 

@@ -25,8 +25,6 @@ from functools import cached_property
 from math import frexp
 from typing import Any
 
-import flint
-
 from singimpact.algebra.balls import as_rational
 from singimpact.algebra.numbers import exact
 from singimpact.branches.ball_closing import POINT, EnclosedMap
@@ -34,6 +32,7 @@ from singimpact.branches.krawczyk import EnclosedOrbit, enclosed_orbit, upper
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.flights.enclosures.certified_hit import ProvedImpact
 from singimpact.flights.enclosures.equation import Refused
+from singimpact.handed_on import flint
 
 Pair = tuple[Fraction, Fraction]
 

@@ -162,7 +162,7 @@ class _Run:
         """The first flights of states (x, x') of a model without a clock, to the wall."""
         model, x, xdot = self.study.model, self.tau, self.v
         ends = launch(model, x, xdot, 0.0, horizon=self.study.horizon)
-        rows, self.tau, self.v = _ended(ends.status), 0.0 * x, np.array(ends.v)
+        rows, self.tau, self.v = ended(ends.status), 0.0 * x, np.array(ends.v)
         free = np.flatnonzero(_open_flights(ends.status))
         late = free[self._free(rows, free, x[free] - as_float(model.clearance), xdot[free])]
         self.v[late] = launch(model, x[late], xdot[late], 0.0).v
@@ -234,7 +234,7 @@ class _Run:
         self.count += impacts
         self.tau[at], self.v[at] = study.phases.of(ends.tau), ends.v
         rests = chattering(study, self.tau[at], ends.v)
-        rows, over = _ended(ends.status), (ends.status != 0) | ~np.isfinite(ends.tau) | ~(ends.v >= 0)
+        rows, over = ended(ends.status), (ends.status != 0) | ~np.isfinite(ends.tau) | ~(ends.v >= 0)
         if not study.phases.clocked:
             free = np.flatnonzero(_open_flights(ends.status))
             late = free[self._free(rows, free, np.zeros(free.size), ends.v[free])]
@@ -280,7 +280,7 @@ class _Run:
         self._decide(places >= 0, rows)
 
 
-def _ended(status: Array) -> Array:
+def ended(status: Array) -> Array:
     """Rows of states whose flights have ended so."""
     rows = np.zeros((status.size, 3))
     rows[:, 0] = np.select([status == Status.no_return, status == Status.escaped], [AWAY, GONE], STUCK)

@@ -9,10 +9,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from singimpact.algebra.numbers import Array
-from singimpact.dynamics.attractors import AWAY, CHAOS, CHATTER, GONE, OTHER, RESPONSE, RESTING, STUCK, apart
+from singimpact.dynamics.attractors import CHAOS, CHATTER, OTHER, RESPONSE, RESTING, STUCK, apart
 from singimpact.dynamics.lift_off import release
 from singimpact.dynamics.long_run import growth
-from singimpact.dynamics.settling import Study, at_rest, chattering
+from singimpact.dynamics.settling import Study, at_rest, chattering, ended
 from singimpact.flights.impact_map import impact_map
 from singimpact.flights.orbits import iterate
 from singimpact.status import Status
@@ -71,9 +71,7 @@ class Responses:
             for index in left[resting].tolist():
                 self._lift(index)
             over = ~resting & ((ends.status != 0) | ~(ends.v > 0))
-            codes = [(Status.no_return, AWAY), (Status.escaped, GONE)]
-            values = np.select([ends.status == status for status, _ in codes], [code for _, code in codes], STUCK)
-            self.rows[left[over]] = np.stack([values, 0 * values, 0 * values], axis=1)[over]
+            self.rows[left[over]] = ended(ends.status[over])
             left = self._going(left, until)
 
     def _going(self, chosen: Array, until: float) -> Array:

@@ -14,10 +14,7 @@ from singimpact.flights.results import Flight
 from singimpact.flights.states import as_written
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.model import Oscillator
-from singimpact.status import Wall, status_array
-
-NAMES = {name: wall for wall in Wall for name in (wall.name, wall.name[0], int(wall))}
-"""The wall of each of its names: "lower" or "upper", the first letter, 0 or 1."""
+from singimpact.status import Wall, status_array, wall_of
 
 
 def wall_codes(osc: Oscillator, wall: Any) -> Array:
@@ -31,7 +28,7 @@ def wall_codes(osc: Oscillator, wall: Any) -> Array:
     if wall is None:
         return np.zeros((), np.int8)
     names = np.asarray(wall, dtype=None if isinstance(wall, np.ndarray) else object)
-    codes = np.array([NAMES.get(name, -1) for name in names.ravel().tolist()], np.int8).reshape(names.shape)
+    codes = np.array([wall_of(name) for name in names.ravel().tolist()], np.int8).reshape(names.shape)
     if codes.size and (codes.min() < 0 or (osc.upper is None and codes.any())):
         accepted = (
             "'lower' or 'upper', or an array of them" if osc.upper is not None else "'lower': the model has one wall"

@@ -15,6 +15,7 @@ from singimpact.algebra.rings import to_sympy
 from singimpact.inputs import InputError, checked_methods, refuse, require_known, shown, unknown
 from singimpact.oscillator import rebound
 from singimpact.oscillator.period import checked_period, moving_in_time, period_of
+from singimpact.status import wall_of
 from singimpact.store import read_bounded
 
 STATE = ("x", "xdot")
@@ -151,25 +152,22 @@ class Oscillator:
         """  # noqa: E501
         return _mirrored(self)  # type: ignore[no-any-return]
 
-    def one_wall(self, wall: Any = "lower") -> Self:
+    def one_wall(self, wall: object = "lower") -> Self:
         """The model with the lower wall alone, or with the upper one alone and x -> -x.
 
         Parameters
         ----------
-        wall : "lower" or "upper".
+        wall : "lower" or "upper", "l" or "u", 0 or 1.
 
         Examples
         --------
         >>> Oscillator("x", "cos(2*t)", "-0.5", "0.6", upper="0.7").one_wall("upper")
         Oscillator(f='x', g='-cos(2*t)', clearance='-0.7', restitution='0.6')
         """
-        if self.upper is None and wall == "lower":
-            return self
-        if self.upper is None or wall not in ("lower", "upper"):
-            raise refuse(
-                "wall", wall, "'lower' or 'upper'" if self.upper is not None else "'lower': this model has one"
-            )
-        return (self if wall == "lower" else self.mirrored).replace(upper=None, upper_restitution=None)
+        code = wall_of(wall)
+        if code < 0 or (code and self.upper is None):
+            raise refuse("wall", wall, "'lower' or 'upper'" if self.upper is not None else "'lower': the model has one")
+        return (self.mirrored if code else self).replace(upper=None, upper_restitution=None)
 
     def force(self, keep: Collection[str] = ()) -> Expression:
         """f with the parameters' values put in; those in `keep` stay letters."""

@@ -15,14 +15,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
-from flint import arb
-
 from singimpact.algebra.analytic import Recorder
 from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.expressions import ZERO, Expression, Name, add, multiply, names_in, substitute, subtract
 from singimpact.flights.enclosures.equation import Equation, programs_of
 from singimpact.flights.enclosures.motion import CarriedMotion, Met, Pair, Start, added
 from singimpact.flights.enclosures.tube import Tube, ball, centre, narrowed, upper
+from singimpact.handed_on import flint
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import CLEARANCE
 
@@ -171,7 +170,7 @@ class FlightFromRest(CarriedMotion):
 
     def _crossed(self, value: Tube, slope: Tube, length: Any, near: _NearLaunch) -> Iterator[tuple[Any, bool]]:
         """Pieces of a step on which x - c may vanish, and whether it is shown to do so once."""
-        stack, least = [(arb(0), arb(length))], length * arb(2) ** (-2 * PIECES)
+        stack, least = [(flint.arb(0), flint.arb(length))], length * flint.arb(2) ** (-2 * PIECES)
         while stack:
             a, b = stack.pop()
             piece = a.union(b)
@@ -194,7 +193,7 @@ class FlightFromRest(CarriedMotion):
                 yield (narrowed(piece, value, slope) if alone else piece), alone
 
     def _undecided(self, value: Tube, slope: Tube, length: Any, near: _NearLaunch) -> Iterator[Any]:
-        stack, least = [(arb(0), arb(length))], length * arb(2) ** -PIECES
+        stack, least = [(flint.arb(0), flint.arb(length))], length * flint.arb(2) ** -PIECES
         while stack:
             a, b = stack.pop()
             piece = a.union(b)

@@ -72,3 +72,21 @@ def test_import_loads_numpy_alone() -> None:
     )
     run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     assert run.stdout.strip() == "[]"
+
+
+SESSION = """
+import sys
+import singimpact as si
+
+osc = si.ImpactOscillator("x + xdot/10", "cos(2*t)", 0, "0.8")
+pair = osc.replace(upper="0.5")
+osc.first_hit(0.1, 0.5), osc.iterate([0.1], [0.5], 9), osc.orbit(0.1, 0.5), osc.chatter_limit(0.5, 0.01)
+osc.lyapunov(0.1, 0.5, 100), osc.periodic(1, 1)[0].branch("restitution", points=9)
+pair.orbit(0.1, 0.5), pair.periodic("lu", 1)
+print(*{"flint", "sympy"} & set(sys.modules))
+"""
+
+
+def test_a_session_in_doubles_loads_neither_flint_nor_sympy() -> None:
+    loaded = subprocess.run([sys.executable, "-c", SESSION], capture_output=True, text=True, check=True).stdout
+    assert loaded == "\n"

@@ -323,8 +323,11 @@ def test_places_and_walls_that_are_none_are_refused():
     osc = model("linear")
     with pytest.raises(InputError, match="between both walls"):
         osc.launch(100.0, 0.0, 0.0)
-    with pytest.raises(InputError, match="'lower' or 'upper'"):
-        osc.impact_map(0.0, 1.0, wall="left")
+    for wall in ("left", {}, 2):
+        for ask in (lambda wall=wall: osc.impact_map(0.0, 1.0, wall=wall), lambda wall=wall: osc.one_wall(wall)):
+            with pytest.raises(InputError, match="'lower' or 'upper'"):
+                ask()
+    assert osc.one_wall("u") == osc.one_wall(1) == osc.one_wall("upper") != osc.one_wall("l")
     with pytest.raises(InputError, match="one wall"):
         si.linear(2, 0, 1).impact_map(0.0, 1.0, wall="upper")
 
