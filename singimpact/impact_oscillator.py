@@ -509,7 +509,7 @@ def linear(
     force = ("stiffness*x" if "stiffness" in changed else "x") + (" + damping*xdot" if "damping" in changed else "")
     wave = "cos(omega*t + phase)" if "phase" in changed else "cos(omega*t)"
     forcing = f"amplitude*{wave}" if "amplitude" in changed else wave
-    above = dict(zip(UPPER, upper if isinstance(upper, tuple) else (upper,), strict=False))
+    above = dict(zip(UPPER, upper if isinstance(upper, tuple) and len(upper) == 2 else (upper,), strict=False))
     return ImpactOscillator(force, forcing, clearance, restitution, {"omega": omega, **changed}, **above)
 
 

@@ -198,7 +198,7 @@ def _completed(osc: Oscillator, tau: Array, v: Array, codes: Array) -> Array:
 
 
 def iterates(osc: Oscillator, tau: Any, v: Any, impacts: int, keep: bool, wall: Any = None) -> Ends:
-    """`iterate`, with the states after every impact along a first axis when they are all_walls."""
+    """`iterate`; where they are to be kept, with the states after every impact along a first axis."""
     if osc.upper is not None and wall is None:
         wall = Wall.lower
     if not keep:
@@ -217,6 +217,6 @@ def iterates(osc: Oscillator, tau: Any, v: Any, impacts: int, keep: bool, wall: 
     times, speeds = (
         np.stack(column).reshape(shape) for column in zip(*((row.tau, row.v) for row in rows), strict=True)
     )
-    all_walls = None if walls is None else np.stack([row.wall for row in rows]).reshape(shape)
+    flown_to = None if walls is None else np.stack([row.wall for row in rows]).reshape(shape)
     turns = np.broadcast_to(states.turns, states.tau.shape).reshape(states.shape)
-    return Ends(times + turns, speeds, status_array(rows[-1].status.reshape(states.shape)), all_walls)
+    return Ends(times + turns, speeds, status_array(rows[-1].status.reshape(states.shape)), flown_to)

@@ -327,6 +327,9 @@ def test_places_and_walls_that_are_none_are_refused():
         for ask in (lambda wall=wall: osc.impact_map(0.0, 1.0, wall=wall), lambda wall=wall: osc.one_wall(wall)):
             with pytest.raises(InputError, match="'lower' or 'upper'"):
                 ask()
+    for places in ((), ("0.5",), ("0.5", "0.8", "0.9")):
+        with pytest.raises(InputError, match="upper = "):
+            si.linear(2, 0, 1, upper=places)
     assert osc.one_wall("u") == osc.one_wall(1) == osc.one_wall("upper") != osc.one_wall("l")
     with pytest.raises(InputError, match="one wall"):
         si.linear(2, 0, 1).impact_map(0.0, 1.0, wall="upper")
