@@ -15,7 +15,7 @@ from singimpact.algebra.balls import Balls
 from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.expressions import Expression, evaluate, names_in, number
 from singimpact.flights.enclosures.certified_hit import Launch, ProvedImpact, certified_hit
-from singimpact.flights.enclosures.equation import programs_of
+from singimpact.flights.enclosures.equation import Refused, programs_of
 from singimpact.flights.enclosures.jet_flight import JetHit, jet_hit
 from singimpact.flights.enclosures.timed_flight import Arrival, timed_flight, touches_first
 from singimpact.flights.horizons import horizon_of
@@ -218,6 +218,59 @@ class TouchingClosing(BallClosing):
     """
 
     touches = True
+
+
+class WordClosing(BallClosing):
+    """Closing conditions of impacts at the walls of a word: the next state that G gives, less that of the orbit.
+
+    Impacts are proved to be the first at either wall, so orbits that touch a wall have no such conditions.
+    """
+
+    def __init__(self, osc: Oscillator, word: tuple[int, ...], k: int, digits: int, bits: int) -> None:
+        super().__init__(osc, k, digits, bits)
+        self.word = word
+
+    def impacts(self, point: list[Fraction], radius: Fraction) -> list[ProvedImpact]:
+        """The next impact of each state of a box; `Refused` where it is at another wall than the word says."""
+        hits = []
+        for i, state in enumerate(self.states(point)):
+            osc = self.osc.mirrored if self.word[i] else self.osc
+            launch = self.launch(state, radius)
+            hit = certified_hit(osc, launch, self.digits + SPARE, self.horizon, derivative=bool(radius))
+            if bool(hit.velocity > 0) != (self.word[i] != self.word[(i + 1) % len(self.word)]):
+                raise Refused("the next impact is at the other wall")
+            hits.append(hit)
+        return hits
+
+    def first_hits(self, point: list[Fraction], radius: Fraction) -> None:
+        self.impacts(point, radius)
+
+    def miss(self, point: list[Fraction]) -> Any:
+        states, span, rows = self.states(point), self.span(point)[0], []
+        for i, hit in enumerate(self.impacts(point, Fraction(0))):
+            tau, v = map(self.balls.rational, states[(i + 1) % len(states)])
+            rows += [[hit.tau - tau - (span if i == len(states) - 1 else 0)], [hit.v - v]]
+        return flint.arb_mat(rows)
+
+    def slopes(self, point: list[Fraction], radius: Fraction) -> Slopes:
+        return Slopes([hit.derivative for hit in self.impacts(point, radius)], [], [], None)
+
+    def matrix(self, slopes: Slopes) -> Any:
+        size = 2 * len(slopes.blocks)
+        rows = [[flint.arb(0)] * size for _ in range(size)]
+        for i, block in enumerate(slopes.blocks):
+            for p, derivatives in enumerate(block):
+                for q, entry in enumerate(derivatives):
+                    rows[2 * i + p][2 * i + q] += entry
+                rows[2 * i + p][(2 * i + 2 + p) % size] -= 1
+        return flint.arb_mat(rows)
+
+
+def closing_in_balls(osc: Oscillator, word: tuple[int, ...], k: int, digits: int, bits: int) -> BallClosing:
+    """The closing conditions of orbits whose impacts are at the walls of a word."""
+    if osc.upper is None:
+        return BallClosing(osc, k, digits, bits)
+    return WordClosing(osc, word, k, digits, bits)
 
 
 def _impact(end: Arrival, law: list[Any]) -> list[list[Any]]:

@@ -11,19 +11,19 @@ from singimpact.branches.branch_walk import BranchWalk
 from singimpact.branches.closing import Closing
 from singimpact.branches.events import KINDS, Event, own_events
 from singimpact.branches.orbit_curve import SETTINGS, places
-from singimpact.branches.orbits import PeriodicOrbit
-from singimpact.branches.solutions import closing_of, orbit_of, point_of
-from singimpact.inputs import InputError, checked_keywords, refuse, whole
+from singimpact.branches.orbits import OfImpacts, PeriodicOrbit
+from singimpact.branches.solutions import AnyClosing, closing_of, orbit_of, point_of
+from singimpact.inputs import InputError, checked_keywords, refuse, takes_two_walls, whole
 from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION, value_of, with_number
-from singimpact.result import Result, numbered
+from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION, UPPER, value_of, with_number
+from singimpact.result import numbered
 
 POINTS = ("parameter", "period", "tau", "v", "stable", "visible", "multipliers")
 """Arrays of a branch, a row for each of its points."""
 
 
 @dataclass(frozen=True, eq=False)
-class Branch(Result):
+class Branch(OfImpacts):
     """Periodic orbits over a parameter.
 
     Parameters
@@ -32,7 +32,7 @@ class Branch(Result):
     parameter : shape (m,). tau, v : shape (m, n), states after the impacts; of orbits without impact x and x' at time
         0, shape (m, 1). multipliers : shape (m, 2), the larger first; of limit cycles (m, 1). visible : shape
         (m,), bool.
-    period : the time after which each closes, shape (m,).
+    period : the time after which each closes, shape (m,). wall : int8, shape (n,), of each impact, of a model with two.
     events : in the order of the branch. A point of the branch stands at each that is no touch of the wall, and between
         any two. notes : where and why it ends, and where rounding leaves events open.
     """
@@ -49,6 +49,7 @@ class Branch(Result):
     events: tuple[Event, ...]
     notes: tuple[str, ...]
     period: Array
+    wall: Array | None = None
 
     def __len__(self) -> int:
         return int(self.parameter.size)
@@ -66,9 +67,14 @@ class Branch(Result):
         at[[event.index + 1 for event in self.events if not event.described.touches]] = True
         return at
 
+    @property
+    def closing(self) -> AnyClosing:
+        """The closing conditions of its orbits."""
+        return closing_of(self.oscillator, self.word, self.k, (self.over,))
+
     def orbit(self, index: int) -> PeriodicOrbit:
         """The orbit at a point."""
-        closing = closing_of(self.oscillator, self.n, self.k, (self.over,))
+        closing = self.closing
         parameter = self.parameter[index : index + 1 or None][:1]
         if isinstance(closing, Closing):
             states = closing.point(self.tau[index], self.v[index], float(self.period[index]))
@@ -112,13 +118,15 @@ class Branch(Result):
 
     def __repr__(self) -> str:
         low, high = (float(end) for end in (self.parameter.min(), self.parameter.max()))
-        cycles = f"limit cycles, n = {self.n}" if self.oscillator.autonomous else f"({self.n}, {self.k}) orbits"
+        plain = f"({self.impacts}, {self.k}) orbits"
+        cycles = f"limit cycles, n = {self.n}" if self.oscillator.autonomous else plain
         lines = [f"<branch of {cycles}, {len(self)} points, {self.over} from {low:.6g} to {high:.6g}"]
         lines += [f"  {event!r}" for event in self.events]
         return "\n".join([*lines, *(f"  {note}" for note in self.notes)]) + ">"
 
 
 @checked_keywords
+@takes_two_walls
 def branch(
     orbit: PeriodicOrbit,
     over: str = CLEARANCE,
@@ -174,7 +182,7 @@ def branch(
     """
     osc, state = _checked(orbit)
     osc = with_number(osc, over)
-    closing = closing_of(osc, int(orbit.n), orbit.k, (over,))
+    closing = closing_of(osc, orbit.word, orbit.k, (over,))
     value = value_of(osc, over)
     low, high = interval(over, between, value)
     whole("points", points, 2, 10**6)
@@ -202,6 +210,7 @@ def branch(
         tuple(events),
         tuple(walk.notes),
         np.array([closing.k * closing.period(row) for row in at]),
+        orbit.wall,
     )
     return _confirmed(curve, at)
 
@@ -210,7 +219,7 @@ def _confirmed(branch: Branch, at: Array) -> Branch:
     """`visible` compared with the true first hits in the middle of every visible stretch."""
     if not branch.n:
         return branch
-    closing = closing_of(branch.oscillator, branch.n, branch.k, (branch.over,))
+    closing = branch.closing
     seen, notes = branch.visible.copy(), list(branch.notes)
     edges = np.flatnonzero(np.diff(np.concatenate([[False], seen, [False]]).astype(int)))
     for begin, end in edges.reshape(-1, 2).tolist():
@@ -227,13 +236,13 @@ def _checked(orbit: PeriodicOrbit) -> tuple[Oscillator, Array]:
     if orbit.kind == "chatter":
         raise InputError("an orbit with chatter is not followed: give one with finitely many impacts, or with none")
     if orbit.kind == "free":
-        closing = closing_of(orbit.oscillator, 0, orbit.k, ())
+        closing = closing_of(orbit.oscillator, (), orbit.k, ())
         span = float(np.asarray(orbit.tau, dtype=float)[0])
         # from its lowest place back to time 0
         values = {CLEARANCE: float(orbit.x[0])}
         end = closing.family.end(values, span, float(orbit.v[0]), -span)
         return orbit.oscillator, np.array([float(orbit.x[0]) + end.place[0], end.place[1]])
-    return orbit.oscillator, point_of(closing_of(orbit.oscillator, int(orbit.n), orbit.k, ()), orbit)
+    return orbit.oscillator, point_of(closing_of(orbit.oscillator, orbit.word, orbit.k, ()), orbit)
 
 
 def interval(over: str, between: Any, value: float) -> tuple[float, float]:
@@ -244,18 +253,19 @@ def interval(over: str, between: Any, value: float) -> tuple[float, float]:
     >>> interval("clearance", None, 0.0), interval("restitution", None, 0.8), interval("w", ("1/2", 2), 1.0)
     ((-0.5, 0.5), (0.4, 1.0), (0.5, 2.0))
     """
-    if over == RESTITUTION and not value:
-        raise InputError("restitution = 0 is not accepted here: a branch over it needs an orbit that rebounds")
+    restitution = over in (RESTITUTION, UPPER[1])
+    if restitution and not value:
+        raise InputError(f"{over} = 0 is not accepted here: a branch over it needs an orbit that rebounds")
     if between is None:
         reach = SETTINGS.around * (abs(value) or 1.0)
         low, high = value - reach, value + reach
-        return (low, min(high, 1.0)) if over == RESTITUTION else (low, high)
+        return (low, min(high, 1.0)) if restitution else (low, high)
     try:
         low, high = (as_float(constant("between", end)) for end in between)
     except (TypeError, ValueError):
         raise refuse("between", between, "two numbers low < high") from None
-    if not low < high or (over == RESTITUTION and not 0 < low < high <= 1):
-        raise refuse("between", between, "two numbers low < high" + (" in (0, 1]" if over == RESTITUTION else ""))
+    if not low < high or (restitution and not 0 < low < high <= 1):
+        raise refuse("between", between, "two numbers low < high" + (" in (0, 1]" if restitution else ""))
     if not low <= value <= high:
         raise refuse("between", between, f"an interval that holds {over} = {value:.12g} of the orbit")
     return low, high

@@ -1,8 +1,9 @@
 """Points at which a branch of periodic orbits meets another branch of orbits of as many impacts and periods.
 
 A pitchfork: the branch of (2n, 2k) orbits that leaves the (n, k) orbits at a period doubling meets them again there,
-as (2n, 2k) orbits whose halves are equal. Other branches cross at a slope over the parameter (transcritical) or none
-(pitchfork); the second branch is reached by one step across the first.
+as (2n, 2k) orbits whose halves are equal. Between two walls orbits whose second half is the mirror image of the first
+lose this symmetry where the map of half an orbit, with x -> -x, doubles its period. Other branches cross at a slope
+over the parameter (transcritical) or none (pitchfork); the second branch is reached by one step across the first.
 """
 
 from dataclasses import dataclass
@@ -17,6 +18,7 @@ from singimpact.branches.events.meeting_branches import BRANCH_POINT, PITCHFORK,
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.solutions import AnyClosing, closing_of, orbit_of, point_of
 from singimpact.branches.step_search import Crossing, EventTests, Key, Node, StepSearch
+from singimpact.branches.wall_closing import closing_of_word
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import CLEARANCE
 
@@ -27,18 +29,21 @@ APART = 1e-3
 
 
 def states_of(orbit: PeriodicOrbit) -> Array:
-    return point_of(closing_of(orbit.oscillator, int(orbit.n), orbit.k, ()), orbit)
+    return point_of(closing_of(orbit.oscillator, orbit.word, orbit.k, ()), orbit)
 
 
-def _twice(once: Closing, twice: Closing, at: Array) -> Array:
-    """The states of an orbit and its repetition as unknowns of one of twice as many impacts."""
+def repeated(once: AnyClosing, twice: AnyClosing, at: Array) -> Array:
+    """An orbit and its repetition, or its mirror image, as unknowns of one of twice as many impacts."""
+    assert isinstance(once, Closing)
+    assert isinstance(twice, Closing)
     n, times, span = once.n, once.times(at), once.k * once.period(at)
-    return twice.point(np.concatenate([times, times + span]), np.tile(at[n : 2 * n], 2), 2 * span)
+    states = twice.point(np.concatenate([times, times + span]), np.tile(at[n : 2 * n], 2), 2 * span)
+    return np.concatenate([states, at[2 * n :]])
 
 
-def _closed(event: PeriodicOrbit, n: int, times: Array, speeds: Array) -> PeriodicOrbit:
+def _closed(event: PeriodicOrbit, word: tuple[int, ...], times: Array, speeds: Array) -> PeriodicOrbit:
     """The orbit next to a point at the event's model; the event itself closes it already, up to rounding."""
-    closing = closing_of(event.oscillator, n, event.k, ())
+    closing = closing_of(event.oscillator, word, event.k, ())
     assert isinstance(closing, Closing)
     point = closing.point(times, speeds, event.period)
     found = closing.newton(point)
@@ -51,47 +56,53 @@ def without_impact(orbit: PeriodicOrbit) -> PeriodicOrbit:
     at = int(np.argmin(np.abs(speeds)))  # an orbit begins at its least phase, not where its branch did
     if n == 1:
         osc = orbit.oscillator
-        closing = closing_of(osc, 0, orbit.k, ())
+        closing = closing_of(osc, (), orbit.k, ())
         end = closing.family.end({CLEARANCE: _wall(osc)}, float(times[0]), 0.0, -float(times[0]))
         return orbit_of(closing, np.array([_wall(osc) + end.place[0], end.place[1]]))
     others = [(at + 1 + i) % n for i in range(n - 1)]
     span = orbit.period
     later = [times[i] + (span if i <= at else 0.0) for i in others]
-    return _closed(orbit, n - 1, np.array(later), speeds[others])
+    return _closed(orbit, tuple(orbit.word[i] for i in others), np.array(later), speeds[others])
 
 
 def with_impact(orbit: PeriodicOrbit) -> PeriodicOrbit:
     n = int(orbit.n)
     times, speeds = np.asarray(orbit.tau, dtype=float), np.asarray(orbit.v, dtype=float)
     if n == 0:
-        return _closed(orbit, 1, times[:1], np.zeros(1))
-    flight, time = touching_flight(orbit)
-    return _closed(orbit, n + 1, np.insert(times, flight + 1, times[flight] + time), np.insert(speeds, flight + 1, 0.0))
+        return _closed(orbit, (0,), times[:1], np.zeros(1))
+    flight, wall, time = touching_flight(orbit)
+    times, speeds = np.insert(times, flight + 1, times[flight] + time), np.insert(speeds, flight + 1, 0.0)
+    return _closed(orbit, (*orbit.word[: flight + 1], wall, *orbit.word[flight + 1 :]), times, speeds)
 
 
-def touching_flight(orbit: PeriodicOrbit) -> tuple[int, float]:
-    """The flight of a hidden impact and the time from its launch: the one with the least height, wherever it begins."""
-    closing = closing_of(orbit.oscillator, int(orbit.n), orbit.k, ())
+def touching_flight(orbit: PeriodicOrbit) -> tuple[int, int, float]:
+    """The flight of a hidden impact, the wall that it touches and the time from its launch.
+
+    It is the one with the least height, wherever it begins.
+    """
+    closing, word = closing_of(orbit.oscillator, orbit.word, orbit.k, ()), orbit.word
     heights = closing.heights(states_of(orbit))
-    flight = int(np.argmin([abs(height) for _, height in heights]))
-    return flight, heights[flight][0]
+    least = int(np.argmin([abs(height) for _, height in heights]))
+    flight = least % len(word)
+    return flight, word[flight] if least < len(word) else 1 - word[flight], heights[least][0]
 
 
 def doubled(orbit: PeriodicOrbit, over: str, parameter: float) -> list[PeriodicOrbit]:
-    """The orbit of twice the period next to a doubling, by one step along the vector that -1 belongs to."""
-    n = int(orbit.n)
-    if n == 0:
+    """The orbit of twice the period next to a doubling."""
+    if orbit.n == 0:
         return []
-    once = closing_of(orbit.oscillator, n, orbit.k, ())
-    at = states_of(orbit)
+    once, twice = (closing_of(orbit.oscillator, m * orbit.word, m * orbit.k, (over,)) for m in (1, 2))
+    return _alternating(once, twice, np.append(states_of(orbit), parameter))
+
+
+def _alternating(once: AnyClosing, twice: AnyClosing, at: Array) -> list[PeriodicOrbit]:
+    """The orbit of two unequal halves next to a doubling of one, by one step along the vector that -1 belongs to."""
     assert isinstance(once, Closing)
-    loop = once.at(at)
+    assert isinstance(twice, Closing)
+    n, loop, parameter = once.n, once.at(at), float(at[-1])
     # the eigenvector of -1: the doubled orbit alternates along it
     vector = np.linalg.svd(loop.slope[:, : 2 * n] - 2 * loop.wrap)[2][-1]
-    osc = orbit.oscillator
-    twice = closing_of(osc, 2 * n, 2 * orbit.k, (over,))
-    assert isinstance(twice, Closing)
-    point = np.append(_twice(once, twice, at), parameter)
+    point = repeated(once, twice, at)
     moved = np.concatenate([vector[:n], -vector[:n], vector[n:], -vector[n:], [0.0]])
     scales = twice.scales(point)
     scales[-1] = max(abs(parameter), 1e-3)
@@ -155,13 +166,23 @@ class BranchPoint:
     other: PeriodicOrbit | None
 
 
+def half_of(closing: AnyClosing) -> AnyClosing | None:
+    """The closing conditions of half an orbit, or of half a symmetric one; None where the halves cannot be equal."""
+    first, second = closing.word[: closing.n // 2], closing.word[closing.n // 2 :]
+    if closing.k % 2 == 0 and first == second:
+        return closing_of(closing.family.osc, first, closing.k // 2, closing.over)
+    if closing.k % 2 and second == tuple(1 - wall for wall in first):
+        return closing_of_word(closing.family.osc, first, closing.k / 2, closing.over)
+    return None
+
+
 def halves(closing: AnyClosing, at: Array) -> Array:
     """The second half of an orbit less the first, in scaled unknowns; it changes sign where a doubled orbit begins.
 
-    Of an odd number of impacts or periods a single 0.
+    Of halves that cannot be equal a single 0.
     """
     n, k = closing.n, closing.k
-    if n % 2 or k % 2:
+    if half_of(closing) is None:
         return np.zeros(1)
     scales = closing.scales(at)
     if not isinstance(closing, Closing):
@@ -173,7 +194,7 @@ def halves(closing: AnyClosing, at: Array) -> Array:
         np.diff(closing.times(at).reshape(2, -1), axis=0)[0],
         np.diff(at[n : 2 * n].reshape(2, -1), axis=0)[0],
     )
-    return np.concatenate([(times - k // 2 * period) / scales[0], speeds / scales[n]])
+    return np.concatenate([(times - k / 2 * period) / scales[0], speeds / scales[n]])
 
 
 def branch_point(search: StepSearch, crossing: Crossing) -> BranchPoint | None:
@@ -181,23 +202,24 @@ def branch_point(search: StepSearch, crossing: Crossing) -> BranchPoint | None:
     closing = search.tests.closing
     low, high = crossing.low.point.at, crossing.high.point.at
     differences = halves(closing, low), halves(closing, high)
-    sizes = [float(np.linalg.norm(each)) for each in differences]
+    sizes = [float(np.linalg.norm(half)) for half in differences]
     is_doubled = len(differences[0]) > 1 and (max(sizes) < SETTINGS.equal or float(differences[0] @ differences[1]) < 0)
     if is_doubled:
-        return _doubling(search, crossing, max(sizes) < SETTINGS.equal)
+        doubling = _doubling(search, crossing, max(sizes) < SETTINGS.equal)
+        if doubling is not None or closing.k % 2 == 0:
+            return doubling
     return None if crossing.kind.is_located else _crossing(search, crossing)
 
 
 def _doubling(search: StepSearch, crossing: Crossing, equal: bool) -> BranchPoint | None:
-    """The pitchfork at the period doubling of the orbits of half as many impacts, a regular point of theirs."""
+    """The pitchfork at the period doubling of half the orbit, a regular point of its closing conditions."""
     closing, scales = search.tests.closing, search.tests.scales
     low, high = crossing.low.point.at, crossing.high.point.at
     near = min(low, high, key=lambda at: float(np.linalg.norm(halves(closing, at))))
-    n = closing.n
-    half = closing_of(closing.family.osc, n // 2, closing.k // 2, closing.over)
-    guess = near
+    n, half, guess = closing.n, half_of(closing), near
+    assert half is not None
     if isinstance(closing, Closing) and isinstance(half, Closing):
-        shift, both = closing.k // 2 * closing.period(near), closing.times(near)
+        shift, both = half.k * closing.period(near), closing.times(near)
         times, speeds = (both[: n // 2] + both[n // 2 :] - shift) / 2, near[n : 2 * n].reshape(2, -1).mean(axis=0)
         guess = np.concatenate([half.point(times, speeds, shift), near[2 * n :]])
     places = [*range(n // 2), *range(n, n + n // 2), 2 * n] if n else [0, 1, 2]
@@ -227,13 +249,15 @@ def _doubling(search: StepSearch, crossing: Crossing, equal: bool) -> BranchPoin
     root = latest[0]
     at = root
     if isinstance(closing, Closing) and isinstance(half, Closing):
-        at = np.concatenate([_twice(half, closing, root), root[n:]])
+        at = repeated(half, closing, root)
     away = np.linalg.norm((at - (low + high) / 2) / scales)
     width = np.linalg.norm((high - low) / scales)
-    if not away <= 2 * width:
+    # half a symmetric orbit is one of the model with x -> -x: the whole one tells whether that is the same
+    if not away <= 2 * width or np.abs(closing.at(at).miss / scales[n]).max() > SETTINGS.equal:
         return None
-    orbit = orbit_of(half, root)
-    following = doubled(orbit, closing.over[0], float(root[-1])) if equal else [orbit]
+    following = [orbit_of(half if closing.k % 2 == 0 else closing, root if closing.k % 2 == 0 else at)]
+    if equal:
+        following = _alternating(half, closing, root) if n else []
     along = float(search.here.tangent @ ((at - search.here.at) / scales))
     return BranchPoint(PITCHFORK, along, at, following[0] if following else None)
 

@@ -24,7 +24,6 @@ from singimpact.branches.orbit_curve import SETTINGS, OrbitCurve
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.solutions import AnyClosing, orbit_of
 from singimpact.branches.step_search import Crossing, EventTests, Key, StepSearch, Tests
-from singimpact.flights.family import SteppedFamily
 from singimpact.inputs import InputError
 from singimpact.store import cache_folder
 
@@ -109,10 +108,10 @@ class BranchWalk(OrbitCurve):
     def _key(self, start: Point) -> tuple[Any, ...] | None:
         """The key of a side in the cache; None for a linear model, whose branches take less than 1 s."""
         family = self.closing.family
-        if not isinstance(family, SteppedFamily):
+        if family.linear:
             return None
         numbers = (start.at.tolist(), start.tangent.tolist(), self.ends[0], self.step, self.most)
-        return family.osc, self.closing.n, self.closing.k, self.over, numbers
+        return family.osc, self.closing.word, self.closing.k, self.over, numbers
 
     def walked(self, curve: Curve, start: Point) -> Iterator[tuple[Point, float, Point]]:
         """The stored steps, then new ones."""
@@ -256,6 +255,7 @@ class BranchWalk(OrbitCurve):
         seen = self._visible(point.at, SETTINGS.located)
         orbit = orbit_of(self.closing, point.at, seen)
         value = float(point.at[-1])
+        impact %= max(self.closing.n, 1)  # flights between two walls are looked at from both
         remark = kind.remark(orbit, float(point.at[impact]), value)
         self.notes += [remark] if remark else []
         event = Event(kind.name, value, orbit, 0, impact, time, self.over, other)

@@ -17,7 +17,7 @@ import numpy as np
 from singimpact.algebra.numbers import Array
 from singimpact.branches.continuation import cubic_between
 from singimpact.flights.derivative import log_determinant
-from singimpact.flights.family import Family
+from singimpact.flights.family import Family, Number, Values
 from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION
 
 NEAR = 0.1
@@ -38,12 +38,12 @@ class Leg(NamedTuple):
     Parameters
     ----------
     family : the models that it is flown by. law : those whose restitution it meets. gap : x - c where it ends, at
-        another wall, whose model has x -> -x; None at the wall of the launch.
+        another wall, whose model has x -> -x, with its derivatives; None at the wall of the launch.
     """
 
     family: Family
     law: Family
-    gap: float | None = None
+    gap: Number | None = None
 
 
 class Characteristic(NamedTuple):
@@ -146,7 +146,12 @@ class Closing:
         """Names of the free parameters."""
         return self.family.over
 
-    def leg(self, i: int) -> Leg:  # noqa: ARG002
+    @property
+    def word(self) -> tuple[int, ...]:
+        """The walls of the impacts, 0 or 1."""
+        return (0,) * self.n
+
+    def leg(self, i: int, values: Values) -> Leg:  # noqa: ARG002
         """The walls of flight i."""
         return Leg(self.family, self.family)
 
@@ -166,6 +171,10 @@ class Closing:
     def point(self, times: Array, speeds: Array, span: float) -> Array:  # noqa: ARG002
         """Unknowns of an orbit from its states and the time after which it closes."""
         return np.concatenate([times, speeds])
+
+    def has_room(self, point: Array) -> bool:  # noqa: ARG002
+        """Whether the wall above, where there is one, is above the other."""
+        return True
 
     def grazes(self, point: Array) -> bool:  # noqa: ARG002
         """Whether the derivatives are rounding, which they are where a limit cycle grazes."""
@@ -192,12 +201,15 @@ class Closing:
         slopes = self._slopes_of_period(point)
         miss, slope, wrap = np.zeros(2 * n), np.zeros((2 * n, 2 * n + len(over))), np.zeros((2 * n, 2 * n))
         for i, (launch, before, v, time) in enumerate(self.flights(point)):
-            leg = self.leg(i)
+            leg = self.leg(i, values)
             end, side = leg.family.end(values, launch, v, time), 1.0 if leg.gap is None else -1.0
             velocity, factor, by_law = leg.law.rebound(side * float(end.place[1]), values)
             factor *= side
             after, last = (i + 1) % n, i == n - 1
-            miss[2 * i], miss[2 * i + 1] = end.place[0] - (leg.gap or 0.0), velocity - point[n + after]
+            miss[2 * i], miss[2 * i + 1] = (
+                end.place[0] - (leg.gap.value if leg.gap else 0.0),
+                velocity - point[n + after],
+            )
             # rho changes the second condition, and so every derivative in its row, by its slope
             scale = np.array([1.0, factor])
             if i or self.clocked:  # the first impact of a cycle stays at time 0
@@ -214,6 +226,7 @@ class Closing:
                 moved = end.by_numbers - np.outer(before * slopes, end.by_tau)
                 moved += np.outer(self.k * slopes, end.by_time) if last else 0.0
                 slope[2 * i : 2 * i + 2, 2 * n :] = (moved * scale).T
+                slope[2 * i, 2 * n :] -= leg.gap.slopes if leg.gap else 0.0
                 slope[2 * i + 1, 2 * n :] += by_law
         return Loop(miss, slope, wrap, self.clocked, self.grazes(point))
 
@@ -283,7 +296,7 @@ class Closing:
         """
         n, values = self.n, self.values(point)
         launch, before, v, _ = self.flights(point)[flight]
-        end = self.family.end(values, launch, v, time)
+        end = self.leg(flight, values).family.end(values, launch, v, time)
         numbers = direction[2 * n :]
         # launches in the first period move with the period
         late = direction[flight] if flight or self.clocked else 0.0
@@ -292,25 +305,28 @@ class Closing:
 
     def span(self, point: Array, flight: int) -> float:
         """The time of a flight."""
-        return self.flights(point)[flight][3]
+        return self.flights(point)[flight % self.n][3]
 
     def pushes(self, point: Array) -> Array:
         """a_c at each impact."""
         values = self.values(point)
-        return np.array([self.family.end(values, tau, 0.0, 0.0).by_time[1] for tau, *_ in self.flights(point)])
+        legs = enumerate(self.flights(point))
+        return np.array([self.leg(i, values).family.end(values, tau, 0.0, 0.0).by_time[1] for i, (tau, *_) in legs])
 
 
 def _height(turn: Turn) -> float:
     return turn[1]
 
 
-def lowest(family: Family, values: dict[str, float], flight: tuple[float, float, float]) -> tuple[float, float]:
+def lowest(family: Family, values: Values, flight: tuple[float, float, float]) -> tuple[float, float]:
     """The lowest local minimum of x - c inside a flight, refined; (nan, inf) where there is none."""
     return min(minima_of(family, values, flight), key=_height, default=(np.nan, np.inf))
 
 
-def minima_of(family: Family, values: dict[str, float], flight: tuple[float, float, float]) -> list[Turn]:
-    """The local minima of x - c inside a flight, in order.
+def minima_of(
+    family: Family, values: Values, flight: tuple[float, float, float], gap: float | None = None
+) -> list[Turn]:
+    """The local minima of x - c inside a flight, in order; with the gap of another wall of the distance from that.
 
     Those near the wall are refined; the others are those of the cubics through the samples. Of a flight that leaves
     the domain of f or g the list is [(nan, -inf)].
@@ -321,16 +337,18 @@ def minima_of(family: Family, values: dict[str, float], flight: tuple[float, flo
     rows = family.path(values, launch, v, time)
     if not np.isfinite(rows).all():
         return [(np.nan, -np.inf)]
-    slopes = np.concatenate([[v], rows[:, 1]])
+    if gap is not None:
+        rows = np.array([gap, 0.0]) - rows
+    slopes = np.concatenate([[v if gap is None else -v], rows[:, 1]])
     turns = np.flatnonzero((slopes[:-1] < 0) & (slopes[1:] >= 0))
     near, width = NEAR * float(np.abs(rows[:, 0]).max()), time / len(rows)
     minima = []
     for index in turns.tolist():
-        ends = (float(rows[index - 1, 0]) if index else 0.0, float(rows[index, 0]))
+        ends = (float(rows[index - 1, 0]) if index else gap or 0.0, float(rows[index, 0]))
         share, height = _cubic_minimum(ends, (float(slopes[index]) * width, float(slopes[index + 1]) * width))
         at = (index + share) * width
         if height < near:
-            at, height = _turning_point(family, values, (launch, v, at), (index * width, (index + 1) * width))
+            at, height = _turning_point(family, values, (launch, v, at), (index * width, (index + 1) * width), gap)
         minima.append((at, height))
     return minima
 
@@ -346,19 +364,24 @@ def _cubic_minimum(ends: tuple[float, float], slopes: tuple[float, float]) -> tu
 
 
 def _turning_point(
-    family: Family, values: dict[str, float], flight: tuple[float, float, float], between: tuple[float, float]
+    family: Family,
+    values: Values,
+    flight: tuple[float, float, float],
+    between: tuple[float, float],
+    gap: float | None = None,
 ) -> tuple[float, float]:
     """Where x' = 0 between two times, by Newton's method kept inside, and x - c there.
 
     Parameters
     ----------
-    flight : launch, v and a first guess of the time.
+    flight : launch, v and a first guess of the time. gap : of another wall, the distance from which is least there.
     """
     launch, v, at = flight
     low, high = between
+    wall, side = (0.0, 1.0) if gap is None else (gap, -1.0)
     for _ in range(60):
         end = family.end(values, launch, v, at)
-        speed, bend = end.by_time.tolist()
+        speed, bend = (side * end.by_time).tolist()
         if speed < 0:
             low = at
         else:
@@ -368,9 +391,9 @@ def _turning_point(
         after = step if inside else (low + high) / 2
         # Newton's method squares the error; there x - c differs by the square of the last step
         if (inside and abs(after - at) <= SETTLED * abs(at)) or high - low <= 1e-15 * high:
-            return after, float(end.place[0]) + speed * (after - at) / 2
+            return after, wall + side * float(end.place[0]) + speed * (after - at) / 2
         at = after
-    return at, float(family.end(values, launch, v, at).place[0])
+    return at, wall + side * float(family.end(values, launch, v, at).place[0])
 
 
 # ---- an orbit without impact
@@ -392,6 +415,7 @@ class FreeClosing:
     over: tuple[str, ...]
     k: int
     n: int = 0
+    word: tuple[int, ...] = ()
 
     clocked: ClassVar[bool] = True
     plastic: ClassVar[bool] = False

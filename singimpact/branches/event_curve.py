@@ -9,16 +9,21 @@ import numpy as np
 
 from singimpact.algebra.numbers import Array
 from singimpact.branches.branch import interval
+from singimpact.branches.branch_points import half_of, halves, repeated
 from singimpact.branches.continuation import Curve, Point
 from singimpact.branches.events import KINDS, Event
+from singimpact.branches.events.meeting_branches import PITCHFORK
 from singimpact.branches.events.orbit_state import OrbitState
 from singimpact.branches.orbit_curve import SETTINGS, OrbitCurve, places
+from singimpact.branches.orbits import OfImpacts
 from singimpact.branches.solutions import AnyClosing, closing_of, point_of
-from singimpact.inputs import checked_keywords, refuse, whole
+from singimpact.inputs import checked_keywords, refuse, takes_two_walls, whole
 from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION, value_of, with_number
+from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION, UPPER, value_of, with_number
 from singimpact.result import Result, numbered
 
+HALVES = 1e-6
+"""Halves of an orbit at a pitchfork that differ by more, in scaled unknowns, are not equal."""
 NUDGE = 1e-6
 """Half the width of a central difference, in scaled unknowns: the derivative then has a relative error of 1e-10."""
 
@@ -44,13 +49,14 @@ class Special(Result):
 
 
 @dataclass(frozen=True, eq=False)
-class EventCurve(Result):
+class EventCurve(OfImpacts):
     """Events of one kind in two parameters.
 
     Parameters
     ----------
     kind : of the events. over : the two numbers. parameters : shape (m, 2). tau, v : shape (m, n).
     visible : shape (m,): whether no flight is below the wall. special : points of codimension two. notes : how it ends.
+    wall : int8, shape (n,), of each impact, of a model with two.
     """
 
     oscillator: Oscillator
@@ -64,6 +70,7 @@ class EventCurve(Result):
     visible: Array
     special: tuple[Special, ...]
     notes: tuple[str, ...]
+    wall: Array | None = None
 
     def __len__(self) -> int:
         return len(self.parameters)
@@ -93,7 +100,7 @@ class EventCurve(Result):
 
     def __repr__(self) -> str:
         lines = [
-            f"<curve of {self.kind} events of ({self.n}, {self.k}) orbits in {' and '.join(self.over)}, "
+            f"<curve of {self.kind} events of ({self.impacts}, {self.k}) orbits in {' and '.join(self.over)}, "
             f"{len(self)} points"
         ]
         lines += [f"  {each.kind} at ({each.parameters[0]:.12g}, {each.parameters[1]:.12g})" for each in self.special]
@@ -101,6 +108,7 @@ class EventCurve(Result):
 
 
 @checked_keywords
+@takes_two_walls
 def event_curve(
     event: Event,
     over: Sequence[str] = (CLEARANCE, RESTITUTION),
@@ -109,11 +117,12 @@ def event_curve(
     points: int = 1000,
     step: float | None = None,
 ) -> EventCurve:
-    """The curve of a fold, doubling, graze, hidden impact or onset of rest in two parameters.
+    """The curve of a fold, doubling, graze, hidden impact, onset of rest or pitchfork in two parameters.
 
     Parameters
     ----------
-    event : of a branch. over : two numbers, as `branch` takes them. between : a pair of intervals, one a number.
+    event : of a branch; of pitchforks one at which half of the orbit doubles, as half of a symmetric orbit does.
+    over : two numbers, as `branch` takes them. between : a pair of intervals, one a number.
     points : at most so many on either side of the event. step : the largest step, a part of the intervals (0.02).
 
     Returns
@@ -132,7 +141,6 @@ def event_curve(
     True
     """
     over = tuple(over)
-    # a pitchfork lies on the curve of the doublings of the orbits of half as many impacts
     if not isinstance(event, Event) or event.described.look is None:
         *labels, last = (kind.label for kind in KINDS if kind.look is not None)
         raise refuse("event", event, f"a {', '.join(labels)} or {last} among the events of a branch")
@@ -148,13 +156,17 @@ def event_curve(
         raise refuse("between", between, "a pair of intervals, one for each number")
     values = [value_of(osc, name) for name in over]
     ends = [interval(name, limits, value) for name, limits, value in zip(over, intervals, values, strict=True)]
-    n = int(orbit.n)
-    closing = closing_of(osc, n, orbit.k, over)
-    if not n:
+    if not orbit.n:
         raise refuse("event", event, "an event of an orbit with impacts: event.others()[0] has one that grazes alike")
-    states = point_of(closing, orbit)
+    full = closing_of(osc, orbit.word, orbit.k, over)
+    closing, at = full, np.concatenate([point_of(full, orbit), values])
+    if event.described is PITCHFORK:  # half of the orbit doubles there
+        half = half_of(full)
+        if half is None or np.abs(halves(full, at)).max() > HALVES:
+            raise refuse("event", event, "a pitchfork of an orbit whose halves are equal, or mirror images")
+        closing, at = half, at[[*range(half.n), *range(full.n, full.n + half.n), -2, -1]]
     walk = _Walk(closing, event, ends, step or SETTINGS.step, points)
-    return walk.curve(np.concatenate([states, values]), osc)
+    return walk.curve(at, full)
 
 
 class _Walk(OrbitCurve):
@@ -197,13 +209,14 @@ class _Walk(OrbitCurve):
     def is_sound(self, point: Array) -> bool:
         """Whether no flight has shrunk to nothing, and both numbers are such as a model may have."""
         values = self.closing.values(point)
-        allowed = 0 < values.get(RESTITUTION, 0.5) < 1.05 and self.closing.period(point) > 0
+        laws = (values.get(name, 0.5) for name in (RESTITUTION, UPPER[1]))
+        allowed = all(0 < law < 1.05 for law in laws) and self.closing.period(point) > 0
         return bool(allowed) and super().is_sound(point)
 
     # ---- the curve
 
-    def curve(self, guess: Array, osc: Oscillator) -> EventCurve:
-        """Follow the curve in both directions from a guess."""
+    def curve(self, guess: Array, whole: AnyClosing) -> EventCurve:
+        """Follow the curve in both directions from a guess; its orbits are those of the whole closing conditions."""
         self.scaled(guess)
         start = self.begin(guess)
         if start is None:
@@ -212,8 +225,10 @@ class _Walk(OrbitCurve):
         indices = places([isinstance(row, Point) for row in rows])
         special = [replace(row, index=i) for i, row in zip(indices, rows, strict=True) if isinstance(row, Special)]
         points = [row for row in rows if isinstance(row, Point)]
-        at, n, k = np.array([point.at for point in points]), self.closing.n, self.closing.k
         seen, names = np.array([self._visible(point.at) for point in points]), self.closing.over
+        at, n, k, osc = np.array([point.at for point in points]), whole.n, whole.k, whole.family.osc
+        if self.closing.n < n:
+            at = np.array([repeated(self.closing, whole, point) for point in at])
         return EventCurve(
             osc,
             self.kind.name,
@@ -226,6 +241,7 @@ class _Walk(OrbitCurve):
             seen,
             tuple(special),
             tuple(self.notes),
+            None if osc.upper is None else np.array(whole.word, np.int8),
         )
 
     def row(self, point: Point) -> Point:

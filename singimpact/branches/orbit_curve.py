@@ -91,9 +91,9 @@ class OrbitCurve(ABC):
         return self.conditions(point)
 
     def is_sound(self, point: Array) -> bool:
-        """Whether no flight has shrunk to nothing."""
-        if not isinstance(self.closing, Closing):
-            return True
+        """Whether no flight has shrunk to nothing, and the walls are apart."""
+        if not isinstance(self.closing, Closing) or not self.closing.has_room(point):
+            return not isinstance(self.closing, Closing)
         period = self.closing.period(point)
         return not any(flight[3] < SETTINGS.shortest * period for flight in self.closing.flights(point))
 

@@ -23,8 +23,25 @@ EQUAL = 1e-9
 """Halves of an orbit that differ by less, of its period and of its largest velocity, are equal."""
 
 
+class OfImpacts(Result):
+    """A result on orbits of n impacts; `wall` is that of each, between two walls."""
+
+    n: Any
+    wall: Any
+
+    @property
+    def word(self) -> tuple[int, ...]:
+        """The walls of the impacts, 0 or 1."""
+        return (0,) * int(self.n) if self.wall is None else tuple(self.wall.tolist())
+
+    @property
+    def impacts(self) -> Any:
+        """The number of impacts, or between two walls their word, as `osc.periodic` takes them."""
+        return self.n if self.wall is None else "".join("lu"[wall] for wall in self.word)
+
+
 @dataclass(frozen=True, eq=False)
-class PeriodicOrbit(Result):
+class PeriodicOrbit(OfImpacts):
     """An orbit that closes after k periods of the forcing, or a limit cycle of a model without one.
 
     Parameters
@@ -128,13 +145,11 @@ class PeriodicOrbit(Result):
         """
         from singimpact.branches.krawczyk import enclosed_orbit
 
-        if self.wall is not None:
-            raise InputError(f"{self!r} is not certified: proofs are of orbits at one wall")
         if self.span is not None:
             raise InputError(f"{self!r} is not certified: proofs are of orbits with the period of a forcing")
         if self.kind != "impacts":
             raise InputError(f"{self!r} is not accepted: an orbit with impacts, none of which rests, can be certified")
-        enclosure = enclosed_orbit(self.oscillator, self.tau, self.v, self.k, digits)
+        enclosure = enclosed_orbit(self.oscillator, self.tau, self.v, self.k, digits, self.word)
         if isinstance(enclosure, str):
             raise InputError(f"{self!r} is not certified: {enclosure}")
         return enclosure
@@ -146,8 +161,7 @@ class PeriodicOrbit(Result):
             self.kind, f"({self.n:.0f}, {self.k}) orbit"
         )
         if self.wall is not None:
-            letters = "".join("lu"[wall] for wall in self.wall.tolist())
-            words = f"({letters}, {self.k}) orbit{', symmetric' if self.symmetric else ''}"
+            words = f"({self.impacts}, {self.k}) orbit{', symmetric' if self.symmetric else ''}"
         kind = ("stable" if self.stable else "unstable") if self.visible else "virtual"
         states = ", ".join(f"({float(t):.6g}, {float(v):.6g})" for t, v in zip(self.tau[:4], self.v[:4], strict=True))
         more = ", ..." if len(self.tau) > 4 else ""

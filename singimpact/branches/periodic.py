@@ -5,6 +5,7 @@ from many starts, grazes among them; for two impacts of a linear model balls sho
 missed. Orbits with digits= are these, refined in balls.
 """
 
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -18,7 +19,7 @@ from singimpact.algebra.balls import BITS_A_DIGIT, as_rational
 from singimpact.algebra.expressions import names_in
 from singimpact.algebra.numbers import Array, as_float, constant, rational_near
 from singimpact.algebra.precision import balls_at, digits_at, for_user
-from singimpact.branches.ball_closing import BallClosing, return_slope
+from singimpact.branches.ball_closing import closing_in_balls, return_slope
 from singimpact.branches.closing import Closing
 from singimpact.branches.enclosed_closing import closed_boxes
 from singimpact.branches.krawczyk import Krawczyk
@@ -109,7 +110,8 @@ def periodic(
         return free_orbits(osc, k)
     doubts: Any = ("found from the start given",)
     if start is not None:
-        points = _from_start(osc, n, k, start)
+        closing = Closing(family(osc), n, k)
+        points = _from_start(closing, start, lambda tau, v: closed_from(closing, grid_of_starts(closing, tau, v)))
     else:
         points, doubts = _all(osc, n, k)
     orbits = _judged(osc, n, k, points)
@@ -128,27 +130,22 @@ def periodic(
 
 def _words(osc: Oscillator, word: Any, k: Any, start: Any, others: tuple[Any, Any]) -> PeriodicOrbits:
     """The orbits between two walls whose impacts have a word."""
-    for name, value in zip(("v", "digits"), others, strict=True):
-        if value is not None:
-            raise refuse(name, value, f"no {name} for a model with two walls: osc.one_wall('lower') has one")
+    v, digits = others
+    if v is not None:
+        raise refuse("v", v, "no v for a model with two walls: osc.one_wall('lower') has one")
     if osc.period is None:
         raise InputError("the forcing has no period: a periodic orbit between two walls needs one")
     closing = closing_of_word(osc, word_of(word), _count("k", k, 1))
-    states = None if start is None else _states_to_start(start)
-    points = closed_words(osc, closing, states)
+    if start is None:
+        points = closed_words(osc, closing)
+    else:
+        points = _from_start(closing, start, lambda tau, v: closed_words(osc, closing, (tau, v)))
     orbits = [orbit for orbit in _judged_points(osc, closing, points) if orbit.visible]
     if start is not None and not orbits:
         raise refuse("start", start, f"a state near a ({word}, {k}) orbit; Newton's method finds none")
+    if digits is not None:
+        orbits = [in_digits(osc, orbit, checked_digits(digits)) for orbit in orbits]
     return PeriodicOrbits(orbits, (SEARCHED if start is None else "found from the start given",))
-
-
-def _states_to_start(start: Any) -> tuple[Array, Array]:
-    """Phase and velocity of the first impact."""
-    try:
-        tau, v = (np.array([as_float(constant("start", number))]) for number in start)
-    except (TypeError, ValueError):
-        raise refuse("start", start, "(tau, v) of the first impact") from None
-    return tau, v
 
 
 def _count(name: str, value: Any, least: int) -> int:
@@ -243,9 +240,14 @@ def _lacking(
     return (*doubts, *(f"the list lacks {orbit!r}" for orbit in lacking))
 
 
-def _from_start(osc: Oscillator, n: int, k: int, start: Any) -> list[Array]:
-    """Points of the solutions that Newton's method finds from states that the caller gives."""
-    closing = Closing(family(osc), n, k)
+def _from_start(closing: Closing, start: Any, closed: Callable[[Array, Array], list[Array]]) -> list[Array]:
+    """Points of the solutions that Newton's method finds from states that the caller gives.
+
+    Parameters
+    ----------
+    closed : gives those from phases and velocities of the first impact.
+    """
+    n = closing.n
     if isinstance(start, PeriodicOrbit):
         start = list(zip(np.asarray(start.tau, dtype=float), np.asarray(start.v, dtype=float), strict=True))
     try:
@@ -257,7 +259,7 @@ def _from_start(osc: Oscillator, n: int, k: int, start: Any) -> list[Array]:
     if len(states) == n:
         root = closing.newton(np.concatenate(states.T))
         return [] if root is None else [root[0]]
-    return closed_from(closing, grid_of_starts(closing, states[:, 0], states[:, 1]))
+    return closed(states[:, 0], states[:, 1])
 
 
 def _pairs(start: Any) -> list[Any]:
@@ -267,7 +269,7 @@ def _pairs(start: Any) -> list[Any]:
 
 def _judged(osc: Oscillator, n: int, k: int, points: list[Array]) -> list[PeriodicOrbit]:
     """Orbits of closed points, each once, in the order of the first phase; those that close sooner are left out."""
-    closing = closing_of(osc, n, k, ())
+    closing = closing_of(osc, (0,) * n, k, ())
     assert isinstance(closing, Closing)
     return _judged_points(osc, closing, points)
 
@@ -313,7 +315,7 @@ def in_digits(osc: Oscillator, rough: PeriodicOrbit, digits: int) -> PeriodicOrb
     product = Fraction(0)
     bits = ceil((digits + SPARE) * BITS_A_DIGIT) + 64
     with balls_at(bits):
-        closing = BallClosing(osc, rough.k, digits + SPARE, bits)
+        closing = closing_in_balls(osc, rough.word, rough.k, digits + SPARE, bits)
         # refused where the orbit is virtual, or a flight is not shown to be its own: the status says so
         with suppress(Refused, ZeroDivisionError, ValueError):
             states = Krawczyk(closing, states, small).solved(states)

@@ -11,7 +11,7 @@ from singimpact.branches.closing import Closing, FreeClosing
 from singimpact.branches.limit_cycle import CycleClosing
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.resting import free_orbit_at
-from singimpact.branches.wall_closing import WallClosing
+from singimpact.branches.wall_closing import WallClosing, closing_of_word
 from singimpact.flights.family import family
 from singimpact.flights.impact_map import impact_map
 from singimpact.flights.walls import at_walls
@@ -35,8 +35,11 @@ class VisibleSettings:
 SETTINGS = VisibleSettings()
 
 
-def closing_of(osc: Oscillator, n: int, k: int, over: Sequence[str]) -> AnyClosing:
-    """The closing conditions of n impacts, or of none, in k periods."""
+def closing_of(osc: Oscillator, word: tuple[int, ...], k: int, over: Sequence[str]) -> AnyClosing:
+    """The closing conditions of impacts at the walls of a word, or of no impact, in k periods."""
+    n = len(word)
+    if n and osc.upper is not None:
+        return closing_of_word(osc, word, k, over)
     if n and osc.autonomous:
         return CycleClosing(family(osc, tuple(over)), n, k)
     if n:
@@ -89,7 +92,7 @@ def orbit_at(closing: Closing, point: Array, osc: Oscillator | None = None, seen
         k,
         visible=seen,
         span=None if closing.clocked else float(point[0]),
-        wall=np.array(closing.word, np.int8)[order] if isinstance(closing, WallClosing) else None,
+        wall=None if osc.upper is None else np.array(closing.word, np.int8)[order],
     )
 
 
@@ -120,7 +123,8 @@ def visible(closing: Closing, point: Array, osc: Oscillator) -> bool:
     if not (same | left).all():
         return False
     heights = closing.heights(point) if left.any() else []
-    return all(height >= -SETTINGS.touching for (_, height), open_ in zip(heights, left, strict=False) if open_)
+    open_ = np.resize(left, len(heights))  # of each flight, seen from both walls
+    return all(height >= -SETTINGS.touching for (_, height), doubtful in zip(heights, open_, strict=True) if doubtful)
 
 
 def _plain(multipliers: Array) -> Array:

@@ -301,6 +301,11 @@ def conditions(closing: Closing, points: Array) -> tuple[Array, Array]:
     osc, n, m = closing.family.osc, closing.n, len(points)
     period = closing.family.period({}).value
     times = np.concatenate([points[:, :n], points[:, :1] + closing.k * period], axis=1)
+    if osc.upper is not None:
+        loops = [closing.at(point) for point in points]
+        late = np.all(np.diff(times, axis=1) > 0, axis=1, keepdims=True)
+        miss = np.array([loop.miss for loop in loops])
+        return np.where(late, miss, np.nan), np.array([loop.slope for loop in loops])
     launches, spans, speeds = (block.ravel() for block in (times[:, :n], np.diff(times, axis=1), points[:, n:]))
     launches = launches - period * np.floor(launches / period)
     spans = np.where(spans > 0, spans, np.nan)

@@ -6,18 +6,21 @@ both walls, and its velocity rebounds by the law of s'.  Everything else is as w
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from singimpact.algebra.numbers import Array
 from singimpact.branches.closing import Closing, Leg, Turn, minima_of
+from singimpact.branches.starts import closed_from
 from singimpact.flights.derivative import log_determinant
-from singimpact.flights.family import Family, LinearFamily, family
+from singimpact.flights.family import End, Family, Number, Values, family
 from singimpact.flights.flat_numbers import gap_of
 from singimpact.flights.orbits import iterates
 from singimpact.inputs import refuse
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION, UPPER, value_of
 from singimpact.status import Status
 
 
@@ -34,16 +37,60 @@ class WordSettings:
     kept: int = 80
     # the same of a model without a closed form, whose flights cost more
     fewer: int = 24
-    # rounds of Newton's method; the largest step of a phase in one of them, in periods; and the velocity beyond which a
-    # start is left, in units of the largest one at the start
-    rounds: int = 20
-    longest: float = 0.15
-    fastest: float = 8.0
-    # largest step of a solution that is found again, in units of the period and of the largest velocity
-    apart: float = 1e-8
 
 
 SETTINGS = WordSettings()
+
+
+class WallFamily(Family):
+    """Flights of the models of one wall alone, in the numbers of the models with both.
+
+    Parameters
+    ----------
+    osc : a model with two walls. wall : 0, or 1 for the upper one, whose models have x -> -x. over : as for `Family`.
+    """
+
+    def __init__(self, osc: Oscillator, wall: int, over: Sequence[str]) -> None:
+        self.osc, self.over = osc, tuple(over)
+        own = osc.upper_restitution is not osc.restitution or UPPER[1] in over  # else both walls have one law
+        names = {CLEARANCE: CLEARANCE, RESTITUTION: RESTITUTION, UPPER[0]: "", UPPER[1]: ""}
+        if wall:
+            names = {CLEARANCE: "", RESTITUTION: "" if own else RESTITUTION, UPPER[0]: CLEARANCE, UPPER[1]: RESTITUTION}
+        alone = tuple(names.get(name, name) for name in over)
+        self.alone = family(osc.one_wall(wall), tuple(filter(None, alone)))
+        self.fastest, self.linear = self.alone.fastest, self.alone.linear
+        # a number of the family with both walls, of that of one
+        self._into = np.zeros((len(self.alone.over), len(over)))
+        for column, name in enumerate(alone):
+            if name:
+                self._into[self.alone.over.index(name), column] = -1.0 if over[column] == UPPER[0] else 1.0
+
+    def _alone(self, values: Values) -> dict[str, float]:
+        numbers = self._into @ np.array([values[name] for name in self.over])
+        return dict(zip(self.alone.over, numbers.tolist(), strict=True))
+
+    def one_wall(self, values: Values) -> Oscillator:
+        """The model of this wall alone."""
+        return self.alone.oscillator(self._alone(values))
+
+    def period(self, values: Values) -> Number:
+        """The period of the forcing."""
+        period = self.alone.period(self._alone(values))
+        return Number(period.value, tuple(period.slopes @ self._into))
+
+    def rebound(self, velocity: float, values: Values) -> tuple[float, float, tuple[float, ...]]:
+        """rho of this wall at x' before an impact, its derivative, and its derivatives by the numbers."""
+        value, slope, by_numbers = self.alone.rebound(velocity, self._alone(values))
+        return value, slope, tuple(by_numbers @ self._into)
+
+    def end(self, values: Values, tau: float, v: float, time: float) -> End:
+        """The end of a flight from this wall."""
+        end = self.alone.end(self._alone(values), tau, v, time)
+        return end._replace(by_numbers=self._into.T @ end.by_numbers)
+
+    def path(self, values: Values, tau: float, v: float, time: float) -> Array:
+        """A flight from this wall."""
+        return self.alone.path(self._alone(values), tau, v, time)
 
 
 @dataclass(frozen=True)
@@ -52,47 +99,71 @@ class WallClosing(Closing):
 
     Parameters
     ----------
-    family, above : of the models of the lower and of the upper wall alone. word : walls of the impacts, 0 or 1.
-    gap : distance of the walls.
+    family, above : of the models of the lower and of the upper wall. walls : of the impacts, 0 or 1.
+    turned : whether the last flight ends in the mirror image of the first state, which half a symmetric orbit does.
+
+    Notes
+    -----
+    Flight i has minima i, those of the distance from its own wall, and n + i, those from the other one.
     """
 
-    above: Family
-    word: tuple[int, ...]
-    gap: float
+    family: WallFamily
+    above: WallFamily
+    walls: tuple[int, ...]
+    turned: bool = False
 
-    def leg(self, i: int) -> Leg:
-        here, there = self.word[i], self.word[(i + 1) % self.n]
+    @property
+    def word(self) -> tuple[int, ...]:
+        return self.walls
+
+    def has_room(self, point: Array) -> bool:
+        return self.gap(self.values(point)).value > 0
+
+    def gap(self, values: Values) -> Number:
+        """The distance of the walls, and its derivatives."""
+        osc = self.family.osc
+        ends = [values.get(name, value_of(osc, name)) for name in (UPPER[0], CLEARANCE)]
+        moves = {UPPER[0], CLEARANCE}.intersection(self.over)
+        slopes = tuple(float(name == UPPER[0]) - float(name == CLEARANCE) for name in self.over)
+        return Number(ends[0] - ends[1] if moves else gap_of(osc)[0], slopes)
+
+    def leg(self, i: int, values: Values) -> Leg:
+        here, there = self.walls[i], self.walls[(i + 1) % self.n]
+        if self.turned and i == self.n - 1:
+            there = 1 - there
         families = self.family, self.above
-        return Leg(families[here], families[there], self.gap if here != there else None)
+        return Leg(families[here], families[there], self.gap(values) if here != there else None)
 
     def product(self, point: Array) -> float:
         """The product of the multipliers, by Liouville's formula at every impact; nan at a graze."""
-        sizes, signs = 0.0, 1.0
+        sizes, signs, values = 0.0, 1.0, self.values(point)
         for i, (tau, _, v, time) in enumerate(self.flights(point)):
-            leg = self.leg(i)
-            velocity = leg.family.end({}, tau, v, time).place[1]
+            leg = self.leg(i, values)
+            velocity = leg.family.end(values, tau, v, time).place[1]
             if not v * velocity:
                 return float("nan")
+            assert isinstance(leg.family, WallFamily)
+            assert isinstance(leg.law, WallFamily)
             # with the restitution of the wall that is hit: one model of one wall has the flight, the other the law
-            law = leg.law.osc.restitution
-            osc = leg.family.osc.replace(restitution=law)
+            osc = leg.family.one_wall(values).replace(restitution=leg.law.one_wall(values).restitution)
             size = log_determinant(osc, *(np.array([number]) for number in (tau, abs(v), time, -abs(velocity))))
             sizes, signs = sizes + float(size[0]), signs * np.sign(v)
         return float(signs * np.exp(sizes))
 
     def minima(self, point: Array) -> list[list[Turn]]:
-        """The places nearest to a wall within each flight: minima of x - c, and of the distance from the other wall."""
-        rows = []
-        for i, (launch, _, v, time) in enumerate(self.flights(point)):
-            own = self.leg(i).family
-            turns = minima_of(own, {}, (launch, v, time))
-            path = own.path({}, launch, v, time) if time > 0 else np.zeros((0, 2))
-            inner = path[:-1, 0]
-            if inner.size:
-                at = int(np.argmax(inner))
-                turns.append(((at + 1) * time / len(path), self.gap - float(inner[at])))
-            rows.append(turns)
-        return rows
+        """All local minima of each flight, of the distance from its wall, and then of that from the other one."""
+        values = self.values(point)
+        flights = [
+            (self.leg(i, values).family, (tau, v, time)) for i, (tau, _, v, time) in enumerate(self.flights(point))
+        ]
+        gap = self.gap(values).value
+        return [minima_of(own, values, flight, at) for at in (None, gap) for own, flight in flights]
+
+    def rise(self, point: Array, direction: Array, flight: int, time: float) -> float:
+        rate = super().rise(point, direction, flight % self.n, time)
+        if flight < self.n:
+            return rate
+        return float(np.dot(self.gap(self.values(point)).slopes, direction[2 * self.n :])) - rate
 
 
 def word_of(word: object) -> tuple[int, ...]:
@@ -111,13 +182,13 @@ def word_of(word: object) -> tuple[int, ...]:
     return tuple("lu".index(letter) for letter in word)
 
 
-def closing_of_word(osc: Oscillator, word: tuple[int, ...], k: int) -> WallClosing:
-    """The closing conditions of a word."""
-    lower, upper = (family(osc.one_wall(wall)) for wall in ("lower", "upper"))
-    return WallClosing(lower, len(word), k, upper, word, gap_of(osc)[0])
+def closing_of_word(osc: Oscillator, word: tuple[int, ...], k: float, over: Sequence[str] = ()) -> WallClosing:
+    """The closing conditions of a word; in half a period those of half a symmetric orbit."""
+    lower, upper = (WallFamily(osc, wall, over) for wall in (0, 1))
+    return WallClosing(lower, len(word), k, upper, word, bool(2 * k % 2))  # type: ignore[arg-type]
 
 
-def closed_words(osc: Oscillator, closing: WallClosing, start: tuple[Array, Array] | None) -> list[Array]:
+def closed_words(osc: Oscillator, closing: WallClosing, start: tuple[Array, Array] | None = None) -> list[Array]:
     """The solutions that Newton's method finds from true orbits with the word, each once.
 
     Parameters
@@ -128,7 +199,7 @@ def closed_words(osc: Oscillator, closing: WallClosing, start: tuple[Array, Arra
     span = closing.k * period
     if start is None:
         phases = np.linspace(0, period, SETTINGS.phases, endpoint=False)
-        fast = closing.gap / span * n + float(closing.scales(np.zeros(2 * n))[n])
+        fast = closing.gap({}).value / span * n + float(closing.scales(np.zeros(2 * n))[n])
         speeds = 16 * fast * np.geomspace(1e-3, 1, SETTINGS.speeds)
         tau, v = (axis.ravel() for axis in np.meshgrid(phases, speeds))
     else:
@@ -139,45 +210,7 @@ def closed_words(osc: Oscillator, closing: WallClosing, start: tuple[Array, Arra
     good = np.flatnonzero(same & (share > SETTINGS.span[0]) & (share < SETTINGS.span[1]))
     fast = np.maximum(ends.v[:-1].max(axis=0), 1e-300)
     misses = np.abs(np.log(share[good])) + np.abs(ends.v[-1, good] - ends.v[0, good]) / fast[good]
-    solutions: list[Array] = []
-    most = SETTINGS.kept if isinstance(closing.family, LinearFamily) else SETTINGS.fewer
-    for at in good[np.argsort(misses, kind="stable")[:most]].tolist():
-        times = ends.tau[0, at] + (ends.tau[:-1, at] - ends.tau[0, at]) / share[at]
-        near = _approached(closing, np.concatenate([times, ends.v[:-1, at]]), period)
-        if near is None or any(_equal(closing, near, other, period) for other in solutions):
-            continue
-        root = closing.newton(near)
-        if root is not None and not any(_equal(closing, root[0], other, period) for other in solutions):
-            solutions.append(root[0])
-    return solutions
-
-
-def _approached(closing: WallClosing, start: Array, period: float) -> Array | None:
-    """A point next to a solution, by Newton's method with short steps of the phases; None where it leaves the start."""
-    n, at = closing.n, start.copy()
-    fastest = SETTINGS.fastest * float(start[n:].max())
-    for _ in range(SETTINGS.rounds):
-        loop = closing.at(at)
-        if not (np.isfinite(loop.miss).all() and np.isfinite(loop.slope).all()):
-            return None
-        try:
-            step = np.linalg.solve(loop.slope, loop.miss)
-        except np.linalg.LinAlgError:
-            return None
-        longest = float(np.abs(step[:n]).max()) / period
-        at = at - step * min(1.0, SETTINGS.longest / max(longest, 1e-300))
-        spans = np.diff(np.append(at[:n], at[0] + closing.k * period))
-        if not np.abs(at[n:]).max() < fastest or not spans.min() > 0:
-            return None
-        if longest < SETTINGS.apart and float(np.abs(step[n:]).max()) < SETTINGS.apart * fastest:
-            return at
-    return None
-
-
-def _equal(closing: WallClosing, one: Array, other: Array, period: float) -> bool:
-    """Whether two points are the same orbit from the same impact."""
-    n = closing.n
-    gaps = (one[:n] - other[:n]) / period
-    gaps -= np.rint(gaps[0])
-    fast = max(float(np.abs(one[n:]).max()), 1e-300)
-    return bool(np.abs(gaps).max() < SETTINGS.apart and np.abs(one[n:] - other[n:]).max() < SETTINGS.apart * fast)
+    most = SETTINGS.kept if closing.family.linear else SETTINGS.fewer
+    best = good[np.argsort(misses, kind="stable")[:most]]
+    times = ends.tau[0, best] + (ends.tau[:-1, best] - ends.tau[0, best]) / share[best]
+    return closed_from(closing, np.concatenate([times, ends.v[:-1, best]]).T)

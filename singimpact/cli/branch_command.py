@@ -46,7 +46,7 @@ if TYPE_CHECKING:
 @picture_option()
 @click.option("--json", "as_json", is_flag=True, help="Give points and events as JSON.")
 def command(
-    orbit: tuple[int, int],
+    orbit: tuple[str, int],
     start: tuple[str, str] | None,
     over: str,
     height: str,
@@ -55,7 +55,7 @@ def command(
     as_json: bool,
     **options: Any,
 ) -> None:
-    """Follow orbits of N impacts in K periods as a parameter changes.
+    """Follow orbits of N impacts, or of a word of walls, in K periods as a parameter changes.
 
     Prints folds, period doublings, tori, pitchforks, grazes and hidden impacts, and the end of each branch.
     """
@@ -80,7 +80,7 @@ def shown(branches: list[Branch]) -> str:
     parts = []
     for number, branch in enumerate(branches, 1):
         ends = f"{branch.over} from {branch.parameter.min():.9g} to {branch.parameter.max():.9g}"
-        parts.append(f"branch {number}: ({branch.n}, {branch.k}) orbits, {len(branch)} points, {ends}")
+        parts.append(f"branch {number}: ({branch.impacts}, {branch.k}) orbits, {len(branch)} points, {ends}")
         rows = [
             [event.kind, f"{event.parameter:.15g}", *state(event.orbit), "" if event.orbit.visible else "virtual"]
             for event in branch.events

@@ -54,7 +54,7 @@ FOLLOWED = tuple(kind.name for kind in KINDS if kind.look is not None)
 @picture_option()
 @click.option("--json", "as_json", is_flag=True, help="Give points and points of codimension two as JSON.")
 def command(
-    orbit: tuple[int, int],
+    orbit: tuple[str, int],
     start: tuple[str, str] | None,
     over: tuple[str, str],
     kinds: tuple[str, ...],
@@ -142,10 +142,10 @@ def on_curve(event: Event, curve: EventCurve) -> bool:
 def shown(curves: list[EventCurve]) -> str:
     """Curves for people: special points as a table, then how each ends."""
     parts = []
-    for number, each in enumerate(curves, 1):
-        parts.append(f"curve {number}: {each.kind} of ({each.n}, {each.k}) orbits, {len(each)} points")
-        if each.special:
-            rows = [[point.kind, *(f"{part:.15g}" for part in point.parameters)] for point in each.special]
-            parts.append(columns(["point", *each.over], rows))
-        parts += [f"  {note}" for note in each.notes]
+    for number, curve in enumerate(curves, 1):
+        parts.append(f"curve {number}: {curve.kind} of ({curve.impacts}, {curve.k}) orbits, {len(curve)} points")
+        if curve.special:
+            rows = [[point.kind, *map("{:.15g}".format, point.parameters)] for point in curve.special]
+            parts.append(columns(["point", *curve.over], rows))
+        parts += [f"  {note}" for note in curve.notes]
     return "\n".join(parts)

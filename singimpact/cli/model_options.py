@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
@@ -100,11 +101,12 @@ def orbit_options(function: Function) -> Function:
     return click.option(
         "--orbit",
         nargs=2,
-        type=int,
+        type=(str, int),
         metavar="N K",
-        default=(1, 1),
+        default=("1", 1),
         show_default=True,
-        help="N impacts in K periods of the forcing; N = 0: no impact. Without t: limit cycles of N impacts.",
+        help="N impacts in K periods of the forcing; N = 0: no impact. Without t: limit cycles of N impacts. Between "
+        "two walls N is a word such as lu.",
     )(function)
 
 
@@ -119,7 +121,9 @@ def over_option(function: Function) -> Function:
     )(function)
 
 
-def take_orbits(model: ImpactOscillator, orbit: tuple[int, int], start: tuple[str, str] | None) -> list[PeriodicOrbit]:
+def take_orbits(
+    model: ImpactOscillator, orbit: tuple[int | str, int], start: tuple[str, str] | None
+) -> list[PeriodicOrbit]:
     """The orbits that the options name.
 
     Raises
@@ -127,6 +131,8 @@ def take_orbits(model: ImpactOscillator, orbit: tuple[int, int], start: tuple[st
     InputError : there is none.
     """
     n, k = orbit
+    with suppress(ValueError):  # a word of walls stays one
+        n = int(n)
     # limit cycles count no periods: K = 1, which is the default of the option, is none
     orbits = model.periodic(n, None if model.autonomous and k == 1 else k, start=start)
     if not orbits:
@@ -177,7 +183,7 @@ def on_branch(orbit: PeriodicOrbit, branch: Branch) -> bool:
                 gaps = [abs(float(cycle.v[0]) - float(v[0])) for cycle in cycles]
                 near = [cycles[gaps.index(min(gaps))]] if gaps else []
             else:
-                near = periodic(osc, branch.n, branch.k, start=list(zip(tau.tolist(), v.tolist(), strict=True)))
+                near = periodic(osc, branch.impacts, branch.k, start=list(zip(tau.tolist(), v.tolist(), strict=True)))
         except InputError:
             continue
         for other in near:

@@ -85,6 +85,9 @@ class Family(ABC):
     osc : a model. over : names of the numbers that move.
     """
 
+    linear = False
+    """Whether its flights have a closed form."""
+
     def __init__(self, osc: Oscillator, over: Sequence[str] = ()) -> None:
         self.osc, self.over = osc, tuple(over)
         self.fixed = {name: tree for name, tree in osc.parameters.items() if name not in over}
@@ -177,6 +180,8 @@ def _family(osc: Oscillator, over: tuple[str, ...]) -> Family:
 
 class LinearFamily(Family):
     """y' = M y for y = (x - c, x', 1, cosine and sine of every wave)."""
+
+    linear = True
 
     def __init__(self, osc: Oscillator, over: Sequence[str], form: LinearForm) -> None:
         super().__init__(osc, over)

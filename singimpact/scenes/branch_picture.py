@@ -12,7 +12,7 @@ from singimpact.algebra.numbers import Array
 from singimpact.branches.branch import Branch
 from singimpact.branches.event_curve import EventCurve
 from singimpact.branches.events import KINDS, Event, kind_of
-from singimpact.branches.solutions import closing_of, orbit_period
+from singimpact.branches.solutions import orbit_period
 from singimpact.dynamics.bifurcation_diagram import Bifurcation
 from singimpact.inputs import refuse
 from singimpact.scenes.label_places import legend_below, legend_entries, legend_mark, place_labels
@@ -107,8 +107,7 @@ class _Drawn:
 
     def _periods(self) -> Array:
         branch = self.branch
-        family = closing_of(branch.oscillator, max(branch.n, 1), branch.k, (branch.over,)).family
-        return np.array([family.period({branch.over: float(value)}).value for value in branch.parameter])
+        return branch.period / branch.k
 
     def _heights(self) -> Array:
         branch = self.branch
@@ -122,7 +121,7 @@ class _Drawn:
             return branch.v
         if self.shown == "v":
             return np.zeros((len(branch), 1))
-        closing = closing_of(branch.oscillator, 0, branch.k, (branch.over,))
+        closing = branch.closing
         points = np.column_stack([branch.tau, branch.v, branch.parameter])
         return np.array([[min(height for _, height in closing.heights(point))] for point in points])
 
@@ -227,7 +226,7 @@ def _legend(axes: Axes, drawn: list[_Drawn], kinds: list[str], names: set[str]) 
     entries = legend_entries(axes)
     for line in drawn:
         n, k = line.branch.n, line.branch.k
-        name = f"({n}, {k}) orbits" if n else "without impact"
+        name = f"({line.branch.impacts}, {k}) orbits" if n else "without impact"
         entries.setdefault(name, Line2D([], [], color=orbit_color(n, k), linewidth=2.4 * orbit_width(n, k)))
     for kind in kinds:
         style, width = LINES[kind]
@@ -244,11 +243,11 @@ def draw_event_curves(curves: Sequence[EventCurve], axes: Axes) -> Axes:
     fresh, entries = not axes.has_data(), dict[str, Any]()
     from matplotlib.lines import Line2D
 
-    names = {f"({curve.n}, {curve.k})" for curve in curves}
-    for curve in curves:
+    names = [f"({curve.impacts}, {curve.k}) orbits" for curve in curves]
+    for curve, orbits in zip(curves, names, strict=True):
         pen = EVENT_PENS[curve.kind]
         name = kind_of(curve.kind).label
-        name = f"{name} of ({curve.n}, {curve.k}) orbits" if len(names) > 1 else name
+        name = f"{name} of {orbits}" if len(set(names)) > 1 else name
         entries.setdefault(name, Line2D([], [], **pen.line()))
         for seen in (True, False):
             chosen = curve.visible == seen

@@ -136,7 +136,7 @@ LETTERS = {"clearance": "clearance $c$", "restitution": "restitution $r$"}
 """The label of an axis, for each number of a model."""
 MARKS = {kind.name: kind.marker for kind in KINDS}
 """Markers of the events of a branch."""
-COLORS = {"blue": BLUE, "vermillion": VERMILLION, "green": GREEN, "black": BLACK}
+COLORS = {"blue": BLUE, "vermillion": VERMILLION, "green": GREEN, "black": BLACK, "purple": PURPLE}
 STYLES = {"solid": "solid", "dashes": DASHES, "dash-dot": DASH_DOT}
 """Names that kinds of events have for the colours and line styles of their curves."""
 EVENT_PENS = {

@@ -14,8 +14,8 @@ MODEL_ONLY = {
 }  # fmt: skip
 """Methods of the model as it is written."""
 TAKEN = {
-    "acceleration", "bifurcation", "chatter_limit", "derivative", "first_hit", "impact_map", "inverse_map", "iterate",
-    "launch", "lyapunov", "orbit", "periodic", "release", "to_toml",
+    "acceleration", "bifurcation", "branch", "chatter_limit", "derivative", "event_curve", "first_hit", "impact_map",
+    "inverse_map", "iterate", "launch", "lyapunov", "orbit", "periodic", "release", "to_toml",
 }  # fmt: skip
 """What takes two walls."""
 
@@ -56,7 +56,6 @@ def test_enough_of_both_are_tried():
 
 
 @pytest.mark.parametrize("call", [lambda: si.theory.gamma(1, model=PAIR), lambda: si.certify(PAIR.periodic("lu", 1)[0]),
-                                  lambda: PAIR.periodic("lu", 1)[0].certified(),
                                   lambda: si.ImpactSurface(PAIR, (0, 1), (-1, 1))])  # fmt: skip
 def test_what_names_a_model_otherwise_refuses_it_too(call):
     with pytest.raises(InputError, match="one wall"):

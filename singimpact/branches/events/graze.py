@@ -40,7 +40,7 @@ class TouchingKind(EventKind):
         times = np.asarray(orbit.tau, dtype=float)
         if not orbit.n:
             return float(times[0])
-        flight, time = touching_flight(orbit)
+        flight, _, time = touching_flight(orbit)
         return float(times[flight] + time)
 
 
@@ -91,7 +91,8 @@ class Graze(TouchingKind):
         """The orbit without the impact; of an orbit without impact the one with an impact there."""
         from singimpact.branches.branch_points import without_impact
 
-        if orbit.span is not None and orbit.n == 1:  # a cycle without impact is not an orbit of this package
+        # a cycle without impact is not an orbit of this package, nor one between two walls
+        if orbit.n == 1 and (orbit.span is not None or orbit.wall is not None):
             return []
         return [without_impact(orbit)] if orbit.n else super().others(orbit, over, parameter)
 
@@ -150,7 +151,7 @@ class InteriorGraze(TouchingKind):
         from singimpact.branches.branch_points import states_of
         from singimpact.branches.solutions import closing_of
 
-        plain = closing_of(orbit.oscillator, closing.n, closing.k, ())
+        plain = closing_of(orbit.oscillator, closing.word, closing.k, ())
         return int(np.argmin([abs(height) for _, height in plain.heights(states_of(orbit))]))
 
     def equation(self, state: OrbitState) -> float:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from singimpact.algebra.numbers import Array
-from singimpact.branches.events.kind import EventKind, ReturnMapKind
+from singimpact.branches.events.kind import CurveLook, EventKind, ReturnMapKind
 from singimpact.branches.events.orbit_state import OrbitState
 
 if TYPE_CHECKING:
@@ -48,6 +48,15 @@ class Pitchfork(EventKind):
     name = "pitchfork"
     word = "pitchfork bifurcation"
     marker = "P"
+    look = CurveLook("purple", "dashes", 2.4)
+
+    def equation(self, state: OrbitState) -> float:
+        """det J(-1) of half the orbit, or of half a symmetric one."""
+        return state.determinant(-1.0)
+
+    def degenerate(self, state: OrbitState, gradient: Any) -> dict[str, float]:
+        """A fold at the pitchfork, an impact that grazes."""
+        return {"fold and pitchfork": state.determinant(1.0)} | super().degenerate(state, gradient)
 
 
 class Transcritical(EventKind):
@@ -68,8 +77,8 @@ def repeats(closing: AnyClosing, at: Array) -> int:
         return 1
     period, scales, at_times = closing.period(at), closing.scales(at), closing.times(at)
     for share in range(n, 1, -1):
-        if n % share == 0 and k % share == 0:
-            m = n // share
+        m = n // share
+        if n % share == 0 and k % share == 0 and closing.word[m:] == closing.word[: n - m]:
             times = (np.roll(at_times, -m) - at_times - k // share * period)[: n - m] / scales[0]
             speeds = (np.roll(at[n : 2 * n], -m) - at[n : 2 * n]) / scales[n]
             if max(float(np.abs(times).max()), float(np.abs(speeds).max())) < ALIKE:

@@ -72,15 +72,25 @@ def pitchfork():
     return event
 
 
-def test_a_pitchfork_has_no_certificate_and_no_curve(pitchfork) -> None:
+def test_a_pitchfork_has_no_certificate(pitchfork) -> None:
     with pytest.raises(InputError, match=r"no proof covers a pitchfork.* the period doubling of the .1, 1. orbits"):
         pitchfork.certified()
-    with pytest.raises(InputError, match="a fold, doubling, graze, hidden impact or onset of rest"):
-        si.event_curve(pitchfork, ("clearance", "omega"))
     # the doubling that it names is certified, and lies there
     (half,) = pitchfork.others()
     (event,) = [event for event in si.branch(half, "clearance", (0.35, 0.4)).events if event.kind == "period-doubling"]
     assert float(event.certified(12).parameter.value) == pytest.approx(pitchfork.parameter, abs=1e-11)
+
+
+def test_the_curve_of_a_pitchfork_is_that_of_the_doublings_of_half_its_orbits(pitchfork) -> None:
+    (half,) = pitchfork.others()
+    (event,) = [event for event in si.branch(half, "clearance", (0.35, 0.4)).events if event.kind == "period-doubling"]
+    both = [si.event_curve(each, ("clearance", "omega"), ((0.3, 0.45), (4.7, 4.9))) for each in (pitchfork, event)]
+    whole, once = both
+    assert (whole.kind, whole.n, once.kind, once.n) == ("pitchfork", 2, "period-doubling", 1)
+    assert len(whole) > 10
+    here = np.interp(whole.parameters[:, 1], once.parameters[:, 1], once.parameters[:, 0])
+    assert np.abs(here - whole.parameters[:, 0]).max() < 1e-3
+    assert np.abs(whole.v[:, 0] - whole.v[:, 1]).max() == 0
 
 
 def test_a_pitchfork_is_drawn() -> None:

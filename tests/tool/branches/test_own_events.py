@@ -107,7 +107,7 @@ def test_an_own_event_is_drawn_and_refused_as_a_curve_and_a_certificate() -> Non
     assert event.others() == []
     with pytest.raises(InputError, match=r"no proof covers a slowest impact at 0\.3"):
         event.certified()
-    with pytest.raises(InputError, match="a fold, doubling, graze, hidden impact or onset of rest"):
+    with pytest.raises(InputError, match="graze, hidden impact, onset of rest or pitchfork"):
         si.event_curve(event, ("A", "clearance"))
 
 
