@@ -15,6 +15,7 @@ from typing import Any
 from singimpact.impact_oscillator import ImpactOscillator
 from singimpact.inputs import require_known, unknown
 from singimpact.notebook import table
+from singimpact.oscillator.moving_number import UPPER
 
 COLUMNS = ("name", "title", "source")
 
@@ -42,9 +43,10 @@ class NamedModel:
     fields: dict[str, Any]
 
     def __call__(self, **numbers: Any) -> ImpactOscillator:
-        """The model, with the numbers that are given in place of its own: clearance, restitution, or a parameter."""
+        """The model, with the numbers that are given in place of its own: of its walls, or a parameter."""
         own = self.fields.get("parameters", {})
-        require_known(f"number of {self.name}", numbers, ["clearance", "restitution", *own])
+        walls = ["clearance", "restitution", *(UPPER if "upper" in self.fields else ())]
+        require_known(f"number of {self.name}", numbers, [*walls, *own])
         parameters = {name: numbers.get(name, value) for name, value in own.items()}
         outer = {name: value for name, value in numbers.items() if name not in own}
         return ImpactOscillator(**self.fields | outer | {"parameters": parameters})

@@ -34,7 +34,12 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-HEIGHTS = {"v": "velocity $v$ after an impact", "phase": "phase of an impact, in periods", "x": "lowest $x - c$"}
+HEIGHTS = {
+    "v": "velocity $v$ after an impact",
+    "phase": "phase of an impact, in periods",
+    "x": "lowest $x - c$",
+    "walls": r"$\dot x$ after an impact",
+}
 WORDS = {"stable": "stable", "unstable": "unstable", "virtual": "virtual: goes through the wall"}
 
 
@@ -79,6 +84,8 @@ def draw_branches(branches: Sequence[Branch], axes: Axes, height: str = "v") -> 
     if fresh:
         _limits(axes, drawn, shown)
         axes.set(xlabel=LETTERS.get(names[0], names[0]), ylabel=HEIGHTS[shown])
+        if shown == "v" and any(branch.wall is not None for branch in branches):
+            axes.set_ylabel(HEIGHTS["walls"])
         if shown != "phase":
             axes.axhline(0, color=BLACK, linewidth=0.6, zorder=1, gid="no impact")
     marks = [mark for line in drawn for mark in line.marks()]
@@ -118,7 +125,7 @@ class _Drawn:
                 else np.full((len(branch), 1), np.nan)
             )
         if branch.n:
-            return branch.v
+            return _rebounds(branch.v, branch.wall)
         if self.shown == "v":
             return np.zeros((len(branch), 1))
         closing = branch.closing
@@ -130,7 +137,7 @@ class _Drawn:
         if not self.branch.n:
             return np.full(1, np.nan if self.shown == "phase" else 0.0)
         if self.shown == "v":
-            return np.asarray(orbit.v, dtype=float)
+            return _rebounds(np.asarray(orbit.v, dtype=float), orbit.wall)
         return np.asarray(np.mod(np.asarray(orbit.tau, dtype=float) / orbit_period(orbit), 1.0))
 
     def _matched(self, place: Array, near: Array) -> Array:
@@ -182,6 +189,11 @@ def _torn(numbers: Array, heights: Array) -> tuple[Array, Array]:
     """A line of phases, cut where it leaves one side of a period and comes back on the other."""
     jumps = np.flatnonzero(np.abs(np.diff(heights)) > 0.5) + 1
     return np.insert(numbers, jumps, np.nan), np.insert(heights, jumps, np.nan)
+
+
+def _rebounds(v: Array, wall: Array | None) -> Array:
+    """x' after impacts, which is negative at an upper wall."""
+    return v if wall is None else np.where(wall == 1, -v, v)
 
 
 def _limits(axes: Axes, drawn: list[_Drawn], shown: str) -> None:
@@ -354,10 +366,12 @@ def draw_bifurcation(diagram: Bifurcation, axes: Any, height: str = "v") -> Any:
             clip_on=False,
             **(dots | {"markersize": 1.5 * size}),
         )
-    axes.set(xlabel=LETTERS.get(diagram.over, diagram.over), ylabel=HEIGHTS[height])
-    top = axes.get_ylim()[1]
+    above = height == "v" and bool((v < 0).any())  # impacts at an upper wall
+    axes.set(xlabel=LETTERS.get(diagram.over, diagram.over), ylabel=HEIGHTS["walls" if above else height])
+    low, top = axes.get_ylim()
     # velocities 0 stand above the edge, so that markers of grazes are whole
-    axes.set(xlim=(diagram.values.min(), diagram.values.max()), ylim=(-0.03 * top, top) if height == "v" else (0, 1))
+    ends = (low if above else -0.03 * top, top) if height == "v" else (0, 1)
+    axes.set(xlim=(diagram.values.min(), diagram.values.max()), ylim=ends)
     if not np.isfinite(v).any():
         axes.text(0.5, 0.5, "no orbit of this window has an impact", transform=axes.transAxes, ha="center", color=GREY)
     if len(axes.get_legend_handles_labels()[1]) > 1:

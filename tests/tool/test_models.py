@@ -10,11 +10,11 @@ from singimpact.inputs import InputError
 NAMES = list(si.models)
 
 
-def test_twelve_names():
-    assert len(si.models) == len(NAMES) == 12
+def test_all_names():
+    assert len(si.models) == len(NAMES) == 15
     assert dir(si.models) == NAMES
     assert [line.split()[0] for line in repr(si.models).splitlines()] == NAMES
-    assert si.models._repr_html_().count("<tr>") == 13
+    assert si.models._repr_html_().count("<tr>") == 16
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -26,9 +26,10 @@ def test_a_system_is_a_model_with_a_source(name):
     assert re.search(r"\((1[789]|20)\d\d\)|section 6", system.source)
     assert system.known in repr(system)
     assert osc.impact_map(0.3, 0.4).status in tuple(si.Status)
-    for number in ("clearance", *osc.parameters):
-        changed = system(**{number: "1.25"})
-        assert changed == osc.replace(**{number: "1.25"})
+    for number in ("clearance", *osc.parameters, *(() if osc.upper is None else ("upper", "upper_restitution"))):
+        value = "0.25" if osc.upper is not None else "1.25"
+        changed = system(**{number: value})
+        assert changed == osc.replace(**{number: value})
         assert changed != osc
 
 

@@ -70,6 +70,23 @@ def test_symmetry_breaks_where_half_of_the_orbit_doubles(pitchfork):
     assert abs(doubling_of_half(float(found.parameter[2]), float(other.tau[first]), float(other.v[first]))) > 1e-3
 
 
+@pytest.mark.parametrize("omega", [1.2, 1.6, 2.4, 2.8, 3.5])
+@pytest.mark.parametrize("r", [0.5, 0.8])
+def test_symmetry_breaks_at_the_amplitude_of_its_closed_form(omega, r):
+    """Half a period h of x'' + x = A cos(omega t) between -c and c, with x -> -x, has the multiplier -1."""
+    c, h, t = 0.5, np.pi / omega, np.tan(np.pi / omega / 2)
+    kappa = (1 + r**2 + 2 * r * np.cos(h)) / ((1 + r) * r * np.sin(h))
+    v = -c * omega**2 / (kappa + (1 - omega**2) * (1 + r) * t / (2 * r))
+    A = abs(1 - omega**2) * np.hypot(-c + v * (1 + r) * t / (2 * r), v * (1 - r) / (2 * r * omega))
+    osc = si.linear(omega, -c, r, amplitude=0.97 * A, upper=c)
+    events = [
+        event for orbit in osc.periodic("lu", 1) for event in si.branch(orbit, "amplitude", (A / 2, 1.5 * A)).events
+    ]
+    (breaking,) = [event for event in events if event.kind == "pitchfork"]
+    assert breaking.parameter == pytest.approx(A, rel=1e-13)
+    assert float(breaking.orbit.v[0]) == pytest.approx(v, rel=1e-10)
+
+
 def test_orbits_beyond_it_are_two_mirror_images(pitchfork):
     found, event = pitchfork
     (beside,) = event.others()

@@ -27,6 +27,14 @@ def test_a_diagram_has_the_periodic_orbits_of_both_walls(direction):
         assert min(shown) < 0 < max(shown)
 
 
+def test_a_diagram_shows_the_impacts_at_both_walls():
+    found = si.bifurcation(PAIR, "amplitude", ("3.6", "4.4"), 5)
+    axes = si.plot(found)
+    upper = next(axis for axis in np.ravel(axes) if "after an impact" in axis.get_ylabel())
+    low, high = upper.get_ylim()
+    assert low < np.nanmin(found.events[:, :, 1]) < 0 < np.nanmax(found.events[:, :, 1]) < high
+
+
 def test_a_diagram_runs_over_the_place_and_the_restitution_of_the_upper_wall():
     found = si.bifurcation(PAIR, "upper", ("0.4", "0.6"), 3)
     assert found.settled.any()
