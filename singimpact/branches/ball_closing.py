@@ -13,11 +13,11 @@ from typing import Any, NamedTuple
 
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.derivatives import derivative
-from singimpact.algebra.expressions import Expression, evaluate, names_in, number
+from singimpact.algebra.expressions import Expression, evaluate, names_in, number, subtract
 from singimpact.flights.enclosures.certified_hit import Launch, ProvedImpact, certified_hit
 from singimpact.flights.enclosures.equation import Refused, programs_of
 from singimpact.flights.enclosures.jet_flight import JetHit, jet_hit
-from singimpact.flights.enclosures.timed_flight import Arrival, timed_flight, touches_first
+from singimpact.flights.enclosures.timed_flight import Arrival, Walls, timed_flight, touches_first
 from singimpact.flights.horizons import horizon_of
 from singimpact.handed_on import flint
 from singimpact.oscillator.model import Oscillator
@@ -102,27 +102,44 @@ class BallClosing:
     Parameters
     ----------
     osc : the model. k : periods. digits : of the states. bits : of the balls.
-    over : the number of the model that is an unknown, the last one; or None.
+    over : the number of the model that is an unknown, the last one; or None. Between two walls it moves neither wall.
+    word : the walls of the impacts, of a model with two; a flight from the upper one is one of the model with x -> -x.
 
     The unknowns are tau_1, v_1, ..., tau_n, v_n and the number.
     """
 
     touches = False
 
-    def __init__(self, osc: Oscillator, k: int, digits: int, bits: int, over: str | None = None) -> None:
-        self.osc, self.digits, self.over = osc, digits, over
+    def __init__(
+        self,
+        osc: Oscillator,
+        k: int,
+        digits: int,
+        bits: int,
+        over: str | None = None,
+        word: tuple[int, ...] = (),
+    ) -> None:
+        self.osc, self.digits, self.over, self.word = osc, digits, over, word
+        if osc.upper is not None and over is not None and over not in osc.parameters:
+            raise Refused(f"orbits between two walls over the {over} are not enclosed, only those over a parameter")
         self._balls = Balls(bits)
         self.spans = Spans(osc, k, over)
         self.horizon = Fraction(horizon_of(osc, None))
+        self.gap = None if osc.upper is None else evaluate(subtract(osc.upper, osc.clearance), {}, self._balls)
 
     @property
     def balls(self) -> Balls:
         """The ring of the numbers."""
         return self._balls
 
-    def model(self, point: list[Fraction]) -> Oscillator:
-        """The model with the number of a point."""
-        return self.osc if self.over is None else self.osc.replace(**{self.over: point[-1]})
+    def model(self, point: list[Fraction], impact: int = 0) -> Oscillator:
+        """The model with the number of a point, whose lower wall is that of an impact."""
+        osc = self.osc if self.over is None else self.osc.replace(**{self.over: point[-1]})
+        return osc.mirrored if self.word and self.word[impact % len(self.word)] else osc
+
+    def crosses(self, flight: int) -> bool:
+        """Whether a flight ends at the other wall."""
+        return bool(self.word) and self.word[flight] != self.word[(flight + 1) % len(self.word)]
 
     def number(self, point: list[Fraction], radius: Fraction) -> dict[str, Any]:
         """The number over a box, by its name."""
@@ -158,27 +175,29 @@ class BallClosing:
 
     def ends(self, point: list[Fraction], radius: Fraction) -> tuple[list[Arrival], list[list[Any]]]:
         """z and z' at the end of each flight over a box; the velocity after it, and its derivatives."""
-        model = self.model(point)
-        ends = [
-            timed_flight(model, launch, time, self.digits + SPARE, derivative=bool(radius))
-            for launch, time in self.flights(point, radius)
-        ]
-        numbers = self.number(point, radius)
-        law = programs_of(model, tuple(numbers)).rho.prepared(numbers)
-        return ends, [list(law({"v": end.velocity})) for end in ends]
+        ends, laws, numbers = [], [], self.number(point, radius)
+        for i, (launch, time) in enumerate(self.flights(point, radius)):
+            ends.append(timed_flight(self.model(point, i), launch, time, self.digits + SPARE, derivative=bool(radius)))
+            law = programs_of(self.model(point, i + 1), tuple(numbers)).rho.prepared(numbers)
+            side = -1 if self.crosses(i) else 1
+            v, slope, *by_number = law({"v": side * ends[-1].velocity})
+            laws.append([v, side * slope, *by_number])
+        return ends, laws
 
     def first_hits(self, point: list[Fraction], radius: Fraction) -> None:
-        """Refuse a box unless each flight of its orbits is above the wall until it meets it."""
+        """Refuse a box unless each flight of its orbits is between the walls, or above the one, until it meets one."""
         flights = self.flights(point, radius)
         for i, (launch, time) in enumerate(flights):
             crosses = not (self.touches and i == len(flights) - 1)
-            touches_first(self.model(point), launch, time, self.digits + SPARE, crosses=crosses)
+            walls = Walls(self.gap, self.crosses(i))
+            touches_first(self.model(point, i), launch, time, self.digits + SPARE, crosses=crosses, walls=walls)
 
     def miss(self, point: list[Fraction]) -> Any:
         """F at a point, as a column."""
         states, rows = self.states(point), []
         for i, (end, law) in enumerate(zip(*self.ends(point, Fraction(0)), strict=True)):
-            rows += [[end.height], [law[0] - self.balls.rational(states[(i + 1) % len(states)][1])]]
+            place = self.gap if self.crosses(i) else 0
+            rows += [[end.height - place], [law[0] - self.balls.rational(states[(i + 1) % len(states)][1])]]
         return flint.arb_mat(rows)
 
     def slopes(self, point: list[Fraction], radius: Fraction) -> Slopes:
@@ -189,8 +208,10 @@ class BallClosing:
 
     def bends(self, point: list[Fraction], radius: Fraction) -> list[JetHit]:
         """G with D G and D^2 G over the box round each state, by the number too."""
-        model = self.model(point)
-        return [jet_hit(model, self.launch(state, radius), self.horizon) for state in self.states(point)]
+        return [
+            jet_hit(self.model(point, i), self.launch(state, radius), self.horizon, self.crosses(i))
+            for i, state in enumerate(self.states(point))
+        ]
 
     def matrix(self, slopes: Slopes) -> Any:
         """D F, without the column of v_1 where the orbit touches the wall."""
@@ -218,59 +239,6 @@ class TouchingClosing(BallClosing):
     """
 
     touches = True
-
-
-class WordClosing(BallClosing):
-    """Closing conditions of impacts at the walls of a word: the next state that G gives, less that of the orbit.
-
-    Impacts are proved to be the first at either wall, so orbits that touch a wall have no such conditions.
-    """
-
-    def __init__(self, osc: Oscillator, word: tuple[int, ...], k: int, digits: int, bits: int) -> None:
-        super().__init__(osc, k, digits, bits)
-        self.word = word
-
-    def impacts(self, point: list[Fraction], radius: Fraction) -> list[ProvedImpact]:
-        """The next impact of each state of a box; `Refused` where it is at another wall than the word says."""
-        hits = []
-        for i, state in enumerate(self.states(point)):
-            osc = self.osc.mirrored if self.word[i] else self.osc
-            launch = self.launch(state, radius)
-            hit = certified_hit(osc, launch, self.digits + SPARE, self.horizon, derivative=bool(radius))
-            if bool(hit.velocity > 0) != (self.word[i] != self.word[(i + 1) % len(self.word)]):
-                raise Refused("the next impact is at the other wall")
-            hits.append(hit)
-        return hits
-
-    def first_hits(self, point: list[Fraction], radius: Fraction) -> None:
-        self.impacts(point, radius)
-
-    def miss(self, point: list[Fraction]) -> Any:
-        states, span, rows = self.states(point), self.span(point)[0], []
-        for i, hit in enumerate(self.impacts(point, Fraction(0))):
-            tau, v = map(self.balls.rational, states[(i + 1) % len(states)])
-            rows += [[hit.tau - tau - (span if i == len(states) - 1 else 0)], [hit.v - v]]
-        return flint.arb_mat(rows)
-
-    def slopes(self, point: list[Fraction], radius: Fraction) -> Slopes:
-        return Slopes([hit.derivative for hit in self.impacts(point, radius)], [], [], None)
-
-    def matrix(self, slopes: Slopes) -> Any:
-        size = 2 * len(slopes.blocks)
-        rows = [[flint.arb(0)] * size for _ in range(size)]
-        for i, block in enumerate(slopes.blocks):
-            for p, derivatives in enumerate(block):
-                for q, entry in enumerate(derivatives):
-                    rows[2 * i + p][2 * i + q] += entry
-                rows[2 * i + p][(2 * i + 2 + p) % size] -= 1
-        return flint.arb_mat(rows)
-
-
-def closing_in_balls(osc: Oscillator, word: tuple[int, ...], k: int, digits: int, bits: int) -> BallClosing:
-    """The closing conditions of orbits whose impacts are at the walls of a word."""
-    if osc.upper is None:
-        return BallClosing(osc, k, digits, bits)
-    return WordClosing(osc, word, k, digits, bits)
 
 
 def _impact(end: Arrival, law: list[Any]) -> list[list[Any]]:

@@ -142,7 +142,9 @@ def _numbers(balls: Balls, centre: Point, offsets: list[Any], digits: int) -> li
 def _touching(kind: str, orbit: PeriodicOrbit, over: str, parameter: float, digits: int) -> EnclosedEvent | str:
     bits = ceil(digits * BITS_A_DIGIT) + 64
     with balls_at(bits):
-        closing = TouchingClosing(orbit.oscillator, orbit.k, digits, bits, over)
+        first = int(np.argmin(np.abs(np.asarray(orbit.v, dtype=float))))
+        word = orbit.walls[first:] + orbit.walls[:first]
+        closing = TouchingClosing(orbit.oscillator, orbit.k, digits, bits, over, word)
         near = _from_touching_point(orbit, closing, Fraction(float(parameter)))
         operator = Krawczyk(closing, near, Fraction(1, 10 ** (digits + 2)))
         point = operator.solved(near)
@@ -217,7 +219,7 @@ class _Curve:
         """The closing conditions where the unknown is held by which the curve goes."""
         digits = self.digits + spare
         bits = ceil(digits * BITS_A_DIGIT) + 64
-        closing = BallClosing(self.orbit.oscillator, self.orbit.k, digits, bits, self.over)
+        closing = BallClosing(self.orbit.oscillator, self.orbit.k, digits, bits, self.over, self.orbit.walls)
         return Krawczyk(closing, near, Fraction(1, 10 ** (digits + 2)))
 
     def _test(self, slopes: Any) -> Any:

@@ -19,7 +19,7 @@ import numpy as np
 from singimpact.algebra.balls import BITS_A_DIGIT, Balls, as_rational
 from singimpact.algebra.certified import Certified, from_ball
 from singimpact.algebra.precision import balls_at
-from singimpact.branches.ball_closing import BallClosing, closing_in_balls, return_slope
+from singimpact.branches.ball_closing import BallClosing, return_slope
 from singimpact.flights.enclosures.equation import Refused
 from singimpact.handed_on import flint
 from singimpact.oscillator.model import Oscillator
@@ -289,7 +289,7 @@ def enclosed_orbit(
     states = [Fraction(float(coordinate)) for pair in zip(times, speeds, strict=True) for coordinate in pair]
     bits = ceil(digits * BITS_A_DIGIT) + 64
     with balls_at(bits):
-        return proved(lambda: _enclosed(closing_in_balls(osc, word, k, digits, bits), states, digits))  # type: ignore[no-any-return]
+        return proved(lambda: _enclosed(BallClosing(osc, k, digits, bits, word=word), states, digits))  # type: ignore[no-any-return]
 
 
 def _enclosed(orbit: BallClosing, states: list[Fraction], digits: int) -> EnclosedOrbit:

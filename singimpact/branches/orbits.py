@@ -32,7 +32,12 @@ class OfImpacts(Result):
     @property
     def word(self) -> tuple[int, ...]:
         """The walls of the impacts, 0 or 1."""
-        return (0,) * int(self.n) if self.wall is None else tuple(self.wall.tolist())
+        return (0,) * int(self.n) if self.wall is None else self.walls
+
+    @property
+    def walls(self) -> tuple[int, ...]:
+        """The walls of the impacts between two walls; empty of a model with one."""
+        return () if self.wall is None else tuple(self.wall.tolist())
 
     @property
     def impacts(self) -> Any:
@@ -149,7 +154,9 @@ class PeriodicOrbit(OfImpacts):
             raise InputError(f"{self!r} is not certified: proofs are of orbits with the period of a forcing")
         if self.kind != "impacts":
             raise InputError(f"{self!r} is not accepted: an orbit with impacts, none of which rests, can be certified")
-        enclosure = enclosed_orbit(self.oscillator, self.tau, self.v, self.k, digits, self.word)
+        enclosure = enclosed_orbit(
+            self.oscillator, self.tau, self.v, self.k, digits, () if self.wall is None else self.word
+        )
         if isinstance(enclosure, str):
             raise InputError(f"{self!r} is not certified: {enclosure}")
         return enclosure

@@ -19,7 +19,7 @@ from singimpact.algebra.balls import BITS_A_DIGIT, as_rational
 from singimpact.algebra.expressions import names_in
 from singimpact.algebra.numbers import Array, as_float, constant, rational_near
 from singimpact.algebra.precision import balls_at, digits_at, for_user
-from singimpact.branches.ball_closing import closing_in_balls, return_slope
+from singimpact.branches.ball_closing import BallClosing, return_slope
 from singimpact.branches.closing import Closing
 from singimpact.branches.enclosed_closing import closed_boxes
 from singimpact.branches.krawczyk import Krawczyk
@@ -315,7 +315,7 @@ def in_digits(osc: Oscillator, rough: PeriodicOrbit, digits: int) -> PeriodicOrb
     product = Fraction(0)
     bits = ceil((digits + SPARE) * BITS_A_DIGIT) + 64
     with balls_at(bits):
-        closing = closing_in_balls(osc, rough.word, rough.k, digits + SPARE, bits)
+        closing = BallClosing(osc, rough.k, digits + SPARE, bits, word=rough.walls)
         # refused where the orbit is virtual, or a flight is not shown to be its own: the status says so
         with suppress(Refused, ZeroDivisionError, ValueError):
             states = Krawczyk(closing, states, small).solved(states)

@@ -116,8 +116,6 @@ class Event(Result):
         from singimpact.flights.impact_map import checked_digits
 
         touches = self.described.touches
-        if self.orbit.wall is not None:
-            raise InputError(f"{self!r} is not certified: proofs of events are of models with one wall")
         if not self.described.proof:
             *names, last = (kind.name for kind in KINDS if kind.proof)
             raise InputError(

@@ -25,6 +25,8 @@ from math import factorial
 from typing import Any
 
 from singimpact.algebra.analytic import Place, Program, Recorder
+from singimpact.algebra.balls import Balls
+from singimpact.algebra.expressions import evaluate, subtract
 from singimpact.algebra.precision import balls_at
 from singimpact.flights.enclosures.certified_hit import ENCLOSURE, SHORTER, SHORTEST, Launch, box_of, working_at
 from singimpact.flights.enclosures.equation import Equation, NotAnalytic, Programs, Refused, programs_of, recorded
@@ -43,6 +45,7 @@ from singimpact.flights.enclosures.tube import (
     RootAtEnd,
     Tube,
     ball,
+    below,
     centre,
     divided,
     first_root,
@@ -214,12 +217,13 @@ class JetHit:
         return 2 * part if i == j else part
 
 
-def jet_hit(osc: Oscillator, launch: Launch, horizon: Fraction) -> JetHit:
+def jet_hit(osc: Oscillator, launch: Launch, horizon: Fraction, across: bool = False) -> JetHit:
     """The first impact of all members of a box, with first and second derivatives over it.
 
     Parameters
     ----------
     osc : an analytic model. launch : with v > 0, and radii of "tau", "v" and one number of the model.
+    across : whether the impact is at the upper wall, of a model with two.
 
     Raises
     ------
@@ -239,22 +243,26 @@ def jet_hit(osc: Oscillator, launch: Launch, horizon: Fraction) -> JetHit:
     """
     bits = ENCLOSURE.coarse
     with working_at(bits + ENCLOSURE.guard):
-        return _JetFlight(osc, launch, bits).hit(horizon)
+        return _JetFlight(osc, launch, bits, across).hit(horizon)
 
 
 class _JetFlight:
     """z and z' as jets, from step to step."""
 
-    def __init__(self, osc: Oscillator, launch: Launch, bits: int) -> None:
+    def __init__(self, osc: Oscillator, launch: Launch, bits: int, across: bool) -> None:
         from flint import arb
 
-        self.bits, self.name = bits, launch.names[0]
+        self.bits, self.name, self.across = bits, launch.names[0], across
+        self.gap = arb(0)
+        if osc.upper is not None:
+            self.gap = evaluate(subtract(osc.upper, osc.clearance), {}, Balls(bits))
         self.tau, self.v0, numbers = box_of(osc, launch, bits)
         if not self.v0 > 0:
             raise Refused("the launch velocity is not shown positive")
         if osc.parametric:
             raise Refused("second derivatives of flights are not enclosed where t occurs in f")
         self.equation, self.time = Equation(jet_programs(osc, self.name), numbers), arb(0)
+        self.law = Equation(jet_programs(osc.mirrored, self.name), numbers) if across else self.equation
         zero, one = arb(0), arb(1)
         self.z: Jet = jet({}, zero)
         self.v: Jet = jet({0: self.v0, 2: one}, zero)
@@ -263,7 +271,8 @@ class _JetFlight:
     # ---- functions of jets
 
     def _run(self, kind: str, names: int, most: int, **values: Any) -> dict[tuple[int, ...], Any]:
-        return dict(zip(orders(names, most), self.equation.run(kind, **values), strict=True))
+        programs = self.law if kind == "law" else self.equation
+        return dict(zip(orders(names, most), programs.run(kind, **values), strict=True))
 
     def _force(self, z: Jet, v: Jet, kind: str, at: tuple[int, int, int]) -> Jet:
         """f, or a derivative of it, at jets."""
@@ -352,7 +361,15 @@ class _JetFlight:
             inner = divided(value, slope, 1) if launched else (value, slope)
             if not inner[0].polynomial[0] > 0:
                 raise Refused("the mass is not shown to leave the wall")
-            root, length = self._root(inner, length)
+            met, other = inner, below(value, slope, self.gap)
+            if self.across:
+                met, other = other, met
+            root, length = self._root(met, length)
+            if self.gap != 0:
+                last = length if root is None else centre(root.upper())
+                before, length = self._root(other, last)
+                if before is not None or (root is not None and length is not last):
+                    raise Refused("the flight is not shown to meet one wall before the other")
             tubes = [(height(P, K), speed(P, K)) for P in series]
             at = length if root is None else root
             self.z, self.v = [height_tube(at) for height_tube, _ in tubes], [rate(at) for _, rate in tubes]
@@ -382,12 +399,14 @@ class _JetFlight:
         from flint import arb
 
         z, v, clock = [arb(0), *self.z[1:]], self.v, self.tau + self.time
-        a = total(self._forcing(clock), scaled(self._force(z, v, "near", (0, 0, 0)), -1))
+        place = self.gap if self.across else arb(0)
+        a = total(self._forcing(clock), scaled(self._force([place, *z[1:]], v, "near", (0, 0, 0)), -1))
         late = scaled(quotient(z, v), -1)
         late = scaled(quotient(total(z, scaled(product(late, late), a[0] / 2)), v), -1)
-        _, by_x, by_v = self.equation.run("force", x=arb(0), xdot=v[0])
+        _, by_x, by_v = self.equation.run("force", x=place, xdot=v[0])
         jerk = self.equation.run("forcing", t=clock)[1] - by_x * v[0] - by_v * a[0]
         landing = total(v, product(a, late), scaled(product(late, late), jerk / 2))
+        landing = scaled(landing, -1) if self.across else landing
         law = self._run("law", 2, 2, v=landing[0])
         after = composed(law, ([0, *landing[1:]], jet({3: 1}, 0)))
         return JetHit(total(late, jet({0: clock, 1: arb(1)}, arb(0))), after)

@@ -13,7 +13,7 @@ from singimpact.algebra.precision import Ladder
 from singimpact.flights.enclosures.certified_hit import ENCLOSURE, Launch, bits_of_a_set, motion_from, working_at
 from singimpact.flights.enclosures.equation import Refused
 from singimpact.flights.enclosures.motion import CarriedMotion, Pair
-from singimpact.flights.enclosures.tube import NearGraze, RootAtEnd, Tube, centre, divided, first_root
+from singimpact.flights.enclosures.tube import NearGraze, RootAtEnd, Tube, below, centre, divided, first_root
 from singimpact.oscillator.model import Oscillator
 
 
@@ -44,6 +44,21 @@ class Arrival(NamedTuple):
     velocity: Any
     acceleration: Any
     columns: list[Pair]
+
+
+class Walls(NamedTuple):
+    """The walls that a flight may meet.
+
+    Parameters
+    ----------
+    gap : z at another wall, a ball; None of a model with one. across : whether the flight ends there.
+    """
+
+    gap: Any = None
+    across: bool = False
+
+
+ONE_WALL = Walls()
 
 
 def timed_flight(osc: Oscillator, launch: Launch, time: Any, digits: int, *, derivative: bool = False) -> Arrival:
@@ -82,11 +97,14 @@ def timed_flight(osc: Oscillator, launch: Launch, time: Any, digits: int, *, der
     raise Refused(f"{why} (at {bits} bits)")
 
 
-def touches_first(osc: Oscillator, launch: Launch, time: Any, digits: int, *, crosses: bool = False) -> None:
+def touches_first(
+    osc: Oscillator, launch: Launch, time: Any, digits: int, *, crosses: bool = False, walls: Walls = ONE_WALL
+) -> None:
     """Show that z > 0 between the launch and a time at which z = 0, and z' = 0 unless it crosses the wall.
 
     The caller has proved what holds at the time. z > 0 is shown up to a last piece, and there z'' > 0: a function with
-    z = z' = 0 at its end is then positive on it. Where it crosses the wall z' < 0 on the last piece.
+    z = z' = 0 at its end is then positive on it. Where it crosses the wall z' < 0 on the last piece. At another wall
+    the distance from that stands for z, and the distance from the wall that is not met is positive throughout.
 
     Raises
     ------
@@ -98,20 +116,28 @@ def touches_first(osc: Oscillator, launch: Launch, time: Any, digits: int, *, cr
         while True:
             inner, length = _step(motion)
             left = time - motion.time
-            if _reaches(length, left):
-                return _touches_in_step(motion, inner, left, crosses)
+            met, others = inner, []
+            if walls.gap is not None:
+                met, others = below(*motion.members, walls.gap), [inner]
+                if not walls.across:
+                    met, others = inner, [met]
+            reaches = _reaches(length, left)
+            for other in others:
+                _above(motion, other, centre(left.upper()) if reaches else _piece(length, left), crosses)
+            if reaches:
+                return _touches_in_step(motion, met, left, crosses, walls.across)
             piece = _piece(length, left)
-            _above(motion, inner, piece, crosses)
+            _above(motion, met, piece, crosses)
             motion.advance(piece)
 
 
-def _touches_in_step(motion: CarriedMotion, inner: tuple[Tube, Tube], left: Any, crosses: bool) -> None:
-    """Show that z > 0 in the step of the touching point."""
-    last = centre(left)
+def _touches_in_step(motion: CarriedMotion, inner: tuple[Tube, Tube], left: Any, crosses: bool, across: bool) -> None:
+    """Show that the distance from the wall is positive in the step of the touching point."""
+    last, side = centre(left), -1 if across else 1
     for _ in range(TIMED.halvings):
         before = centre(left - last)
         during = before.union(left)
-        if _falls(motion, during) if crosses else bool(_acceleration(motion, during) > 0):
+        if side * motion.members[1](during) < 0 if crosses else side * _acceleration(motion, during) > 0:
             if before > 0:
                 _above(motion, inner, before, crosses)
             return
@@ -174,11 +200,6 @@ def _above(motion: CarriedMotion, inner: tuple[Tube, Tube], length: Any, crosses
         raise Refused(f"the flight is not shown to be above the wall before {ends}") from None
     if root is not None:
         raise Refused(f"the flight meets the wall before {ends}")
-
-
-def _falls(motion: CarriedMotion, during: Any) -> bool:
-    assert motion.members is not None
-    return bool(motion.members[1](during) < 0)
 
 
 def _acceleration(motion: CarriedMotion, during: Any) -> Any:

@@ -188,11 +188,44 @@ def test_a_symmetric_orbit_is_proved_to_have_the_velocity_of_its_closed_form():
 def test_an_orbit_of_another_word_has_no_proof():
     (orbit, *_) = DUFFING.periodic("lluu", 1)
     assert orbit.certified().v
-    with pytest.raises(InputError, match="the next impact is at the other wall"):
+    with pytest.raises(InputError, match="is not certified"):
         replace(orbit, wall=np.array([1, 0, 0, 0], np.int8)).certified()
 
 
-def test_events_between_walls_say_that_no_proof_covers_them(pitchfork):
-    _, event = pitchfork
-    with pytest.raises(InputError, match="models with one wall"):
+def test_an_orbit_that_passes_the_other_wall_has_no_proof():
+    (orbit,) = si.linear(4, 0, "0.5", upper=1).periodic("l", 2)
+    found = si.branch(orbit, "upper", (0.7, 1.1))
+    for i in (0, len(found) - 1):
+        beside = found.orbit(i)
+        if found.visible[i]:
+            assert beside.certified().v
+            continue
+        with pytest.raises(InputError, match="meets the wall before its impact"):
+            beside.certified()
+    assert len(set(found.visible[[0, -1]])) == 2
+
+
+def test_events_between_walls_are_proved():
+    """The fold against its closed form; a graze, a doubling, and what no proof covers."""
+    pair = si.models.impact_pair()
+    events = {event.kind: event for event in si.branch(pair.periodic("lu", 1)[0], "A", (0.05, 0.45)).events}
+    fold = events["fold"].certified(20)
+    with mpmath.workdps(40):
+        wanted = mpmath.mpf("0.5") * mpmath.mpf("0.3") / mpmath.hypot("0.3", mpmath.pi * mpmath.mpf("1.7") / 2)
+        assert abs(mpmath.mpf(str(fold.parameter.value)) - wanted) < 1e-19
+    with pytest.raises(InputError, match="no proof covers a pitchfork"):
+        events["pitchfork"].certified()
+    damped = si.ImpactOscillator("x + xdot/10", "A*cos(1.7*t)", "-0.3", "0.6", {"A": 1}, upper="0.3")
+    (orbit,) = damped.periodic("lul", 1)
+    found = {event.kind: event for event in si.branch(orbit, "A", (0.6, 1.5)).events}
+    for kind in ("graze", "period-doubling", "fold"):
+        proof = found[kind].certified(15)
+        assert float(proof.parameter.value) == pytest.approx(found[kind].parameter, rel=1e-12)
+        assert proof.parameter.radius < 1e-14
+    # an event of another word has none
+    wrong = replace(found["graze"], orbit=replace(found["graze"].orbit, wall=np.zeros(3, np.int8)))
+    with pytest.raises(InputError, match="not certified"):
+        wrong.certified()
+    event = si.branch(orbit, "restitution", (0.4, 0.8)).events[0]
+    with pytest.raises(InputError, match="only those over a parameter"):
         event.certified()
