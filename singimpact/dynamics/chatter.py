@@ -28,7 +28,7 @@ from singimpact.flights.kernels.chatter import CLOSE, COMPLETED, EXHAUSTED, LIFT
 from singimpact.flights.orbits import Segment, orbit_segment
 from singimpact.flights.states import States
 from singimpact.flights.walls import at_walls
-from singimpact.inputs import refuse, whole
+from singimpact.inputs import whole
 from singimpact.oscillator.model import Oscillator, require_smooth_rho
 from singimpact.oscillator.rho_series import series_of_rho
 from singimpact.oscillator.wall_acceleration import acceleration
@@ -121,13 +121,14 @@ def chatter_limit(
     osc : the model. tau, v : states, v >= 0; they broadcast, and the fields have their shape.
     digits : decimal digits of tau, which is then an mpmath number.
     impacts : at most; the status is then `unresolved`. The limit bounds the time of a call.
-    wall : of the states of a model with two walls, as for the impact map; without digits.
+    wall : of the states of a model with two walls, as for the impact map.
 
     Notes
     -----
     With restitution 0 the first impact is the end, or at `lifts_off` the mass leaves there at once.
-    With digits, tau of a model with a number for restitution is enclosed (`dynamics.enclosed`): `certified` has
-    value and radius, and `error` covers them.  For other models `error` is an estimate from the last terms.
+    With digits, tau of a model with one wall and a number for restitution is enclosed (`dynamics.enclosed`):
+    `certified` has value and radius, and `error` covers them.  For other models `error` is an estimate from the last
+    terms.
 
     Examples
     --------
@@ -138,8 +139,6 @@ def chatter_limit(
     if wall is not None:
         fly = partial(chatter_limit, digits=digits, impacts=impacts)
         return at_walls(fly, osc, wall, (tau, v))  # type: ignore[no-any-return]
-    if digits is not None and osc.upper is not None:
-        raise refuse("digits", digits, "None for a model with two walls, or osc.one_wall('lower')")
     states, most = (
         States.of(osc, tau, v, digits if isinstance(digits, int) else 15),
         whole("impacts", impacts, 1, 10**7),
@@ -156,7 +155,8 @@ def chatter_limit(
         return rough
     if rough.status == Status.complete:
         require_smooth_rho(osc, "a chatter limit with digits=")
-    return _enclosed(osc, states, checked_digits(digits)) or _precise(osc, states, rough, digits)
+    proved = _enclosed(osc, states, checked_digits(digits)) if osc.upper is None else None
+    return proved or _precise(osc, states, rough, digits)
 
 
 def _one_impact(osc: Oscillator, tau: Any, v: Any, digits: int | None) -> ChatterLimit:
@@ -460,25 +460,29 @@ def _precise(osc: Oscillator, states: States, rough: ChatterLimit, digits: int) 
         tau, v = states.given(0)
         if not states.rest:
             tau, v = (as_mpf(tree, mp) for tree in (states.exact_tau(0), states.exact_v(0)))
-        count, wanted, r = 0, int(rough.impacts), as_mpf(osc.slope_at_rest(), mp)
-        ring = Multiprecision(mp)
+        count, wanted, ring = 0, int(rough.impacts), Multiprecision(mp)
         while True:
             while count < wanted:
                 step = impact_map(osc, tau, v, digits=precision)
                 tau, v, count = mp.convert(step.tau), mp.convert(step.v), count + 1
+                osc = osc.mirrored if step.wall else osc
             if rough.status == Status.lifts_off:
-                return _rounded(tau, count, small * abs(tau), Status.lifts_off, digits)
+                found = _rounded(tau, count, small * abs(tau), Status.lifts_off, digits)
+                return replace(found, wall=rough.wall)
+            r = as_mpf(osc.slope_at_rest(), mp)
             rho = {k: value for k, value in series_of_rho(osc, ENDING.many, ring).items() if k > 1}
             contact = Contact.of(osc, tau, 0, ENDING.many, ring)
             terms = [c * v**n for n, c in by_velocity(contact, r, rho, ENDING.many).items()]
             error = _last(terms)
             end = tau + sum(reversed(terms))
             if ENDING.trust * error <= small * abs(end) or v == 0:
-                return _rounded(end, count, ENDING.trust * error + small * abs(end), Status.complete, digits)
+                found = _rounded(end, count, ENDING.trust * error + small * abs(end), Status.complete, digits)
+                return replace(found, wall=rough.wall)
             wanted = count + max(1, int(mp.ceil(mp.log(small * abs(end) / (5 * error)) / mp.log(r) / ENDING.many)))
 
 
 def _rounded(tau: Any, count: int, error: Any, status: Status, digits: int) -> ChatterLimit:
     with digits_at(digits) as mp:
-        end, off = (for_user(+mp.convert(number)) for number in (tau, error))
-        return ChatterLimit(end, count, off, np.int8(status))
+        end = +mp.convert(tau)
+        off = mp.convert(error) + abs(end) * mp.eps  # what rounding to these digits adds
+        return ChatterLimit(for_user(end), count, for_user(off), np.int8(status))

@@ -355,3 +355,19 @@ def test_large_arrays_and_threads_give_the_bits_of_small_ones():
     for field in ("tau", "v", "wall", "status"):
         assert np.array_equal(getattr(whole, field)[:500], getattr(part, field), equal_nan=True)
     assert np.isfinite(whole.error[whole.status == Status.hit]).all()
+
+
+def test_a_chatter_limit_in_digits_is_that_of_doubles_and_of_more_digits():
+    osc, rng, seen = si.linear("2.8", "-0.2", "0.5", upper=("0.25", "0.4")), RNG(1), set()
+    for _ in range(30):
+        tau, v, wall = float(rng.uniform(0, 2.2)), float(rng.uniform(0, 1.5)), int(rng.integers(2))
+        rough = osc.chatter_limit(tau, v, wall=wall)
+        if rough.status not in (Status.complete, Status.lifts_off):
+            continue
+        fine, finer = (osc.chatter_limit(tau, v, wall=wall, digits=digits) for digits in (25, 40))
+        assert (fine.status, fine.wall, fine.impacts > 0) == (rough.status, rough.wall, True)
+        assert abs(float(fine.tau) - rough.tau) < 4 * rough.error
+        assert abs(fine.tau - finer.tau) <= fine.error < 1e-23
+        assert finer.error < 1e-38
+        seen.add((int(rough.status), int(rough.wall), int(rough.wall) != wall))
+    assert len(seen) > 5
