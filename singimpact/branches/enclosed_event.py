@@ -76,7 +76,7 @@ class EnclosedEvent(Result):
         parameter and their states within this distance of these lie on one curve, on which the event is; None at a
         graze or hidden impact.
     shown : what is proved, in a sentence. oscillator, k : a model of the branch, and after how many periods the orbit
-        closes.
+        closes. word : walls of its impacts, between two walls.
     """
 
     kind: str
@@ -89,6 +89,7 @@ class EnclosedEvent(Result):
     curve_within: Fraction | None = None
     oscillator: Oscillator | None = field(default=None, repr=False)
     k: int = field(default=1, repr=False)
+    word: tuple[int, ...] = field(default=(), repr=False)
 
     __repr__ = in_words
 
@@ -168,6 +169,7 @@ def _touching(kind: str, orbit: PeriodicOrbit, over: str, parameter: float, digi
             None,
             orbit.oscillator,
             orbit.k,
+            word,
         )
 
 
@@ -294,6 +296,7 @@ class _Curve:
             curved / SETTINGS.reach,
             self.orbit.oscillator,
             self.orbit.k,
+            self.orbit.walls,
         )
 
     def _monotone_within(

@@ -258,7 +258,7 @@ class EnclosedOrbit(Result):
         has all its states within this distance, in tau and in v, of these.
     multipliers : two pairs (real part, imaginary part) of `Certified`; None where they may be equal.
     stable : whether both are proved to be below 1 in size; False where one is proved to be above; else None.
-    oscillator, k : the model, and after how many periods the orbit closes.
+    oscillator, k : the model, and after how many periods the orbit closes. word : walls of its impacts, between two.
     """
 
     tau: tuple[Certified, ...]
@@ -268,6 +268,7 @@ class EnclosedOrbit(Result):
     stable: bool | None
     oscillator: Oscillator | None = field(default=None, repr=False)
     k: int = 1
+    word: tuple[int, ...] = field(default=(), repr=False)
 
 
 def enclosed_orbit(
@@ -305,7 +306,7 @@ def _enclosed(orbit: BallClosing, states: list[Fraction], digits: int) -> Enclos
     ]
     multipliers, stable = _multipliers(return_slope(tight.slopes), digits)
     return EnclosedOrbit(
-        tuple(numbers[::2]), tuple(numbers[1::2]), unique, multipliers, stable, orbit.osc, orbit.spans.k
+        tuple(numbers[::2]), tuple(numbers[1::2]), unique, multipliers, stable, orbit.osc, orbit.spans.k, orbit.word
     )
 
 

@@ -17,6 +17,7 @@ from singimpact.branches.horseshoe import Horseshoe
 from singimpact.branches.krawczyk import EnclosedOrbit
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.certificates.checker import (
+    BETWEEN,
     IN_TIME,
     KINDS,
     SCHEMA,
@@ -30,9 +31,9 @@ from singimpact.certificates.checker import (
 from singimpact.dynamics.chatter import ChatterLimit
 from singimpact.dynamics.gamma_proof.proof import CertifiedGamma
 from singimpact.flights.results import CertifiedImpact, Flight
-from singimpact.inputs import InputError, checked_keywords, refuse, whole
+from singimpact.inputs import InputError, checked_keywords, refuse, takes_two_walls, whole
 from singimpact.oscillator.model import Oscillator, require_rebound
-from singimpact.status import Status
+from singimpact.status import Status, Wall
 from singimpact.store import write_text
 
 CHECKER = Path(__file__).with_name("checker")  # the second program: `python checker FILE.json`
@@ -85,6 +86,7 @@ class Certificate:
 
 
 @checked_keywords
+@takes_two_walls
 def certify(result: Any) -> Certificate:
     """The certificate of a certified result.
 
@@ -139,6 +141,8 @@ def certify(result: Any) -> Certificate:
         )
     numbers = {name: getattr(impact, name).as_dict() for name in IMPACT}
     launch = {name: str(coordinate) for name, coordinate in zip(("tau", "v"), impact.launch, strict=True)}
+    if impact.oscillator.upper is not None:
+        launch["wall"] = Wall(impact.wall).name
     return _sealed("first impact", impact.oscillator, {"launch": launch, **numbers})
 
 
@@ -148,6 +152,12 @@ def _sealed(statement: str, model: Oscillator, numbers: dict[str, Any]) -> Certi
         raise InputError(
             f"the {statement} is not certified in a file: f = {model.f} depends on t, and of such a model the second "
             f"program checks {', '.join(IN_TIME)}"
+        )
+    touches = numbers.get("kind") in TOUCHING
+    if model.upper is not None and (statement not in BETWEEN or touches):
+        raise InputError(
+            f"the {statement} is not certified in a file: of a model with two walls the second program checks "
+            f"{', '.join(BETWEEN)} without a graze"
         )
     content = {"schema": SCHEMA, "statement": statement, "model": model.to_dict(), **numbers}
     return Certificate({**content, "digest": digest_of(content)})
@@ -160,6 +170,7 @@ def _of_orbit(orbit: EnclosedOrbit) -> dict[str, Any]:
         {"tau": _narrow(tau).as_dict(), "v": _narrow(v).as_dict()} for tau, v in zip(orbit.tau, orbit.v, strict=True)
     ]
     widest = max(Fraction(number["radius"]) for state in states for number in state.values())
+    _at_walls(states, orbit.word)
     precise = [pair for pair in orbit.multipliers or () if pair[0].digits > 2 * LOST]  # others say next to nothing
     multipliers = [{"real": _wider(real), "imaginary": _wider(imaginary)} for real, imaginary in precise]
     unique = min(orbit.unique_within, max(UNIQUE, 4 * widest))
@@ -170,6 +181,12 @@ def _of_orbit(orbit: EnclosedOrbit) -> dict[str, Any]:
         "unique_within": str(unique),
         "multipliers": multipliers,
     }
+
+
+def _at_walls(states: list[dict[str, Any]], word: tuple[int, ...]) -> None:
+    """Write the walls of states between two walls."""
+    for state, wall in zip(states, word, strict=False):
+        state["wall"] = Wall(wall).name
 
 
 def _narrow(number: Certified) -> Certified:
@@ -200,6 +217,7 @@ def _of_event(event: EnclosedEvent) -> Certificate:
             f"an event over the {event.over} has no certificate as a file: only those over a parameter have"
         )
     states = [{"tau": tau.as_dict(), "v": v.as_dict()} for tau, v in zip(event.tau, event.v, strict=True)]
+    _at_walls(states, event.word)
     statement = {
         "kind": event.kind,
         "over": event.over,

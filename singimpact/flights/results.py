@@ -26,7 +26,7 @@ class CertifiedImpact(Result):
     Attributes
     ----------
     flight_time, velocity, tau, v : `Certified`, each with `.value` and `.radius`.
-    oscillator, launch : the model, and the exact launch time and velocity.
+    oscillator, launch : the model, and the exact launch time and velocity. wall : of the launch, 1 for the upper one.
 
     Examples
     --------
@@ -44,6 +44,7 @@ class CertifiedImpact(Result):
     v: Certified
     oscillator: Oscillator | None = field(default=None, repr=False)
     launch: tuple[Expression, ...] = field(default=(), repr=False)
+    wall: int = field(default=0, repr=False)
 
     @property
     def value(self) -> dict[str, Any]:

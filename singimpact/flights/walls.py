@@ -88,7 +88,7 @@ def turned(result: Any, out: Mapping[str, Array] | None = None) -> Any:
         fields["wall"] = np.int8(1) - fields["wall"]
     for impact in np.ravel(np.asarray(fields.get("certified"), dtype=object)).tolist():
         if impact is not None:
-            vars(impact)["velocity"] = impact.velocity.negative
+            vars(impact).update(velocity=impact.velocity.negative, oscillator=impact.oscillator.mirrored, wall=1)
     if "velocity" in fields:
         if out is not None and "velocity" in out:
             np.negative(out["velocity"], out=out["velocity"])

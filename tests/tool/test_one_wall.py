@@ -55,7 +55,7 @@ def test_enough_of_both_are_tried():
     assert len(names) > 35
 
 
-@pytest.mark.parametrize("call", [lambda: si.theory.gamma(1, model=PAIR), lambda: si.certify(PAIR.periodic("lu", 1)[0]),
+@pytest.mark.parametrize("call", [lambda: si.theory.gamma(1, model=PAIR),
                                   lambda: si.ImpactSurface(PAIR, (0, 1), (-1, 1))])  # fmt: skip
 def test_what_names_a_model_otherwise_refuses_it_too(call):
     with pytest.raises(InputError, match="one wall"):

@@ -13,9 +13,10 @@ ball under gravity) or `nonlinear` (others, by power series), and `after_contact
 
 from .files import SECONDS, check, digest_of, main
 from .formulas import Refused
-from .schema import IN_TIME, KINDS, SCHEMA, TOUCHING, read, sentence
+from .schema import BETWEEN, IN_TIME, KINDS, SCHEMA, TOUCHING, read, sentence
 
 __all__ = [
+    "BETWEEN",
     "IN_TIME",
     "KINDS",
     "SCHEMA",

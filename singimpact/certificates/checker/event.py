@@ -20,7 +20,7 @@ from flint import arb
 
 from .formulas import Formula, Refused, Wrong, ball, need, require_period
 from .motion import Model, size, within
-from .periodic_orbit import Orbits, require_shortest, return_map
+from .periodic_orbit import Orbits, require_shortest, return_map, walls_of
 from .schema import CURVED, TOUCHING
 from .told import compared
 
@@ -39,7 +39,7 @@ def event(model: Model, content: dict[str, Any], bits: int) -> None:
     point, radii = ([ball(Fraction(number[field])) for number in numbers] for field in ("value", "radius"))
     family = Model(content["model"], over, point[-1])
     span, held = Formula(content["period"], others)() * int(content["periods"]), -1 if kind in CURVED[1:] else 1
-    orbits = Orbits(family, span, bits, held % len(point), touches)
+    orbits = Orbits(family, span, bits, held % len(point), touches, walls_of(content))
     if touches:
         near = [ball(Fraction(content["unique_within"]))] * len(point)
         near[1] = radii[1] = arb(0)

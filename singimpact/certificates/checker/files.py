@@ -15,7 +15,7 @@ from .event import event
 from .formulas import Clock, Refused, Wrong
 from .horseshoe import horseshoe
 from .invariant_arc import invariant_arc
-from .motion import Flight, Model
+from .motion import Flight, Model, landed
 from .periodic_orbit import periodic_orbit
 from .schema import read, require_form, require_statement
 from .told import balls_of, compared, launched
@@ -28,9 +28,13 @@ PARTS = ("flight_time", "velocity", "tau", "v")
 
 def first_impact(model: Model, content: dict[str, Any], bits: int) -> None:
     """Check that the motion from the launch meets the wall first where and as fast as it is written."""
-    tau, v = launched(content)
-    time, velocity, _ = Flight(model, tau, v, bits).first_hit()
-    found = zip(PARTS, (time, velocity, tau + time, model.rebound(velocity)), strict=True)
+    (tau, v), wall = launched(content), content["launch"].get("wall")
+    model = model.from_wall(wall)
+    motion = Flight(model, tau, v, bits)
+    time, velocity, _ = motion.first_hit()
+    there, side = landed(model, motion)
+    speed = velocity * (-1 if wall == "upper" else 1)
+    found = zip(PARTS, (time, speed, tau + time, there.rebound(velocity * side)), strict=True)
     compared({name: (each, content[name]) for name, each in found})
 
 

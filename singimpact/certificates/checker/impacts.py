@@ -10,7 +10,7 @@ from typing import Any
 from flint import arb
 
 from .formulas import Dual, Refused, need
-from .motion import Flight, Model, ends, first_root, tiny
+from .motion import Flight, Model, ends, first_root, landed, tiny
 
 
 class Beside(Flight):
@@ -52,8 +52,9 @@ def impact(model: Model, tau: Any, v: Any, bits: int, centre: tuple[Any, Any] | 
     carried = 3 if model.over else 2
     motion = Flight(model, tau, v, bits, carried) if centre is None else Beside(model, (tau, v), bits, carried, centre)
     time, speed, columns = motion.first_hit()
-    rebound = model.rebound(Dual(speed, [1, 0]), **model.moved(0, 1))
-    end = model.push(tau + time, speed)
+    there, side = landed(model, motion)
+    rebound = there.rebound(Dual(speed * side, [side, 0]), **there.moved(0, 1))
+    end = model.push(tau + time, speed, model.c() + model.gap if motion.across else None)
     late = [-x / speed for x, _ in by_launch(model, tau, v, columns)]
     faster = [w + end * shift for (_, w), shift in zip(by_launch(model, tau, v, columns), late, strict=True)]
     after = [rebound.slopes[0] * shift for shift in faster]

@@ -13,11 +13,13 @@ largest sum of sizes in a row of derivatives.
 
 A first hit is a change of sign of x - c on a piece on which x' < 0, with x - c > 0 on all pieces before; on the first
 step (x - c)/s takes the place of x - c, so that launches from the wall are decided however slow they are, and
-(x - c)/s^2 from rest, (x - c)/s^3 from rest at a zero of x''.
+(x - c)/s^2 from rest, (x - c)/s^3 from rest at a zero of x''.  Of a model with an upper wall each piece is looked at
+for the distance from that too; launches from it are those of the model with x -> -x.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
@@ -36,12 +38,19 @@ class Model:
         parameters = dict(content.get("parameters") or {}) | ({over: value} if over else {})
         self.f, self.g, self.c = (Formula(content[name], parameters) for name in ("f", "g", "clearance"))
         self._law = Formula(content["restitution"], parameters)
+        self.gap = None
+        if "upper" in content:
+            self.gap = Formula(content["upper"], parameters)() - self.c()
         if not self._law.names() - {"pi", *FUNCTIONS, *parameters}:
             need("restitution", 0 <= self._law() <= 1, "the restitution is not shown to be in [0, 1]")
 
     def at(self, value: Any) -> Model:
         """The model with another number."""
         return Model(self.content, self.over, value) if self.over else self
+
+    def from_wall(self, wall: str | None) -> Model:
+        """The model whose lower wall is a wall of this one: with x -> -x for the upper one."""
+        return Model(mirrored(self.content), self.over, self.value) if wall == "upper" else self
 
     def ratio(self) -> Any:
         """r, where the restitution is a number."""
@@ -74,6 +83,20 @@ class Model:
         """g, and what drives the other components."""
         found = self.g(t=time, **(self.moved(0, 0, 1) if count > 1 else {}))
         return [found.value, *found.slopes] if isinstance(found, Dual) else [found, *[0] * (count - 1)]
+
+
+def mirrored(content: dict[str, Any]) -> dict[str, Any]:
+    """The model with x -> -x, as text."""
+    turned = re.sub(r"\b(x|xdot)\b", r"(-\1)", content["f"])
+    law = content["restitution"]
+    return content | {
+        "f": f"-({turned})",
+        "g": f"-({content['g']})",
+        "clearance": f"-({content['upper']})",
+        "upper": f"-({content['clearance']})",
+        "restitution": content.get("upper_restitution", law),
+        "upper_restitution": law,
+    }
 
 
 def size(number: Any) -> Any:
@@ -261,11 +284,15 @@ class Flight:
         self.model, self.tau, self.bits, self.c, self.passed = model, tau, bits, model.c(), arb(0)
         self.x, self.speed = [self.c, arb(1), arb(0), arb(0)][: 1 + columns], [v, arb(0), arb(1), arb(0)][: 1 + columns]
         self.removed = removed or (1 if v > 0 else 2)
+        self.across = False  # whether the first hit is at the upper wall
 
     def step(self) -> Any:
         """The polynomials of the next step, and its length."""
         self.X, h, self.K = step(self.model, self.tau + self.passed, self.x, self.speed, self.bits)
         self.y, self.slope = above(self.X, self.K, self.c, self.removed)
+        if self.model.gap is not None:
+            top = self.c + self.model.gap
+            self.room, self.closing = above([[-part for part in self.X[0]]], self.K, -top, 0)
         return h
 
     def root(self, h: Any) -> tuple[Any, Any]:
@@ -274,10 +301,21 @@ class Flight:
         for part in (1.0, 0.93, 0.86, 0.79):  # a root at the very end of a step is not decided there
             h = arb((h * part).mid())
             try:
-                return first_root(self.y, self.slope, h, tiny(h, self.bits)), h
+                return self._first(h), h
             except Refused as reason:
                 why = reason
         raise why
+
+    def _first(self, h: Any) -> Any:
+        """The first root of the distance from a wall on [0, h]; None where there is none."""
+        least, U = tiny(h, self.bits), first_root(self.y, self.slope, h, tiny(h, self.bits))
+        if self.model.gap is None:
+            return U
+        V = first_root(self.room, self.closing, h if U is None else arb(U.upper()), least)
+        if not (U is None or V is None or V < U):
+            raise Refused("the hits of both walls are not told apart")
+        self.across = V is not None
+        return V if self.across else U
 
     def move(self, s: Any) -> None:
         """To a time of the step."""
@@ -296,7 +334,8 @@ class Flight:
             U, h = self.root(self.step())
             if U is not None:
                 x, speed = ends(self.X, self.K, U)
-                there = speed[0].intersection(U**self.removed * self.slope(U)) if self.removed else speed[0]
+                own = self.removed and not self.across
+                there = speed[0].intersection(U**self.removed * self.slope(U)) if own else speed[0]
                 return self.passed + U, there, list(zip(x[1:], speed[1:], strict=True))
             self.advance(h)
 
@@ -308,7 +347,15 @@ def ends(X: Sequence[Any], K: Any, s: Any) -> tuple[list[Any], list[Any]]:
     return x, [arb_poly(derived(part))(s) + within(K * size(s) ** n) for part in X]
 
 
-def next_state(model: Model, tau: Any, v: Any, bits: int) -> tuple[Any, Any]:
-    """tau and v just after the next impact."""
-    time, velocity, _ = Flight(model, tau, v, bits).first_hit()
-    return tau + time, model.rebound(velocity)
+def landed(model: Model, motion: Flight) -> tuple[Model, int]:
+    """The model of the wall that was hit, and the sign of x' in it."""
+    return (model.from_wall("upper"), -1) if motion.across else (model, 1)
+
+
+def next_state(model: Model, tau: Any, v: Any, bits: int, across: bool = False) -> tuple[Any, Any]:
+    """tau and v just after the next impact, at the other wall or at the same."""
+    motion = Flight(model, tau, v, bits)
+    time, velocity, _ = motion.first_hit()
+    need("wall", motion.across == across, "the next impact is at another wall than is written")
+    there, side = landed(model, motion)
+    return tau + time, there.rebound(velocity * side)

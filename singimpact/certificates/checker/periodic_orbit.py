@@ -22,23 +22,29 @@ from .told import compared
 
 
 class Orbits(NamedTuple):
-    """F: a model, k periods, bits, the place of the held unknown, and whether the orbit touches the wall."""
+    """F: a model, k periods, bits, the place of the held unknown, and whether the orbit touches the wall.
+
+    `walls` : of the impacts, of a model with two.
+    """
 
     model: Model
     span: Any
     bits: int
     held: int | None = None
     touches: bool = False
+    walls: tuple[str | None, ...] = (None,)
 
     def linearised(self, point: list[Any], radii: list[Any]) -> tuple[list[Any], Any, list[Any]]:
         """D G of the flights over a box, D F, and F at its centre."""
         bits, n = self.bits, len(point) // 2
         box = [x + within(r) for x, r in zip(point, radii, strict=True)]
-        wide, exact = (self.model.at(*states[2 * n :] or [None]) for states in (box, point))
+        models = [self.model.at(*states[2 * n :] or [None]) for states in (box, point)]
         missed: list[Any] = []
         D, slopes = arb_mat(2 * n, len(point)), []
         for i in range(n):
             (tau, v), (at, speed), after = box[2 * i : 2 * i + 2], point[2 * i : 2 * i + 2], 2 * ((i + 1) % n)
+            here, there = (self.walls[k % n % len(self.walls)] for k in (i, i + 1))
+            wide, exact = (model.from_wall(here) for model in models)
             rows: Any = None
             span = self.span if i == n - 1 else 0
             if span and self.touches:
@@ -50,7 +56,7 @@ class Orbits(NamedTuple):
             else:
                 for a in (0, 1):
                     D[2 * i + a, after + a] -= 1
-                image = next_state(exact, at, speed, bits)
+                image = next_state(exact, at, speed, bits, here != there)
                 missed += [image[0] - point[after] - span, image[1] - point[after + 1]]
             rows = rows or impact(wide, tau, v, bits)
             slopes.append(arb_mat([row[:2] for row in rows]))
@@ -88,6 +94,11 @@ class Orbits(NamedTuple):
         return slopes
 
 
+def walls_of(content: dict[str, Any]) -> tuple[str | None, ...]:
+    """The walls of the states that are written; none of a model with one."""
+    return tuple(state.get("wall") for state in content["states"])
+
+
 def middles(matrix: Any) -> Any:
     return arb_mat([[arb(part.mid()) for part in row] for row in matrix.table()])
 
@@ -118,7 +129,8 @@ def periodic_orbit(model: Model, content: dict[str, Any], bits: int) -> None:
     require_period(model.f, content["period"])
     numbers = [state[name] for state in states for name in ("tau", "v")]
     point, radii = ([ball(Fraction(number[field])) for number in numbers] for field in ("value", "radius"))
-    orbits = Orbits(model, Formula(content["period"], model.g.parameters)() * k, bits)
+    span = Formula(content["period"], model.g.parameters)() * k
+    orbits = Orbits(model, span, bits, walls=walls_of(content))
     near = ball(Fraction(content["unique_within"]))
     require_shortest(point, radii, orbits.span, k)
     total = return_map(orbits.alone(point, [[near] * len(point), radii]))

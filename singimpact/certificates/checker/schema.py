@@ -180,6 +180,11 @@ def touching(content: dict[str, Any]) -> Form:
     return form
 
 
+def at_wall(content: dict[str, Any]) -> dict[str, Form]:
+    """The wall of a state, of a model with two."""
+    return {"wall": WALL} if isinstance(content.get("model"), dict) and "upper" in content["model"] else {}
+
+
 def after(content: dict[str, Any]) -> Form:
     """Keys and types of the statement after a contact point; none where a certificate names the fastest launch."""
     names = (
@@ -206,7 +211,10 @@ MODEL = {
     "restitution": formula,
     "parameters?": parameters,
     "period?": formula,
+    "upper?": formula,
+    "upper_restitution?": formula,
 }
+WALL = one_of("lower", "upper")
 LAUNCH = {"tau": formula, "v": formula}
 ORBIT = {"period": formula, "periods": whole(1, 1000)}
 EVENT = {"kind": one_of(*KINDS), "over": name, "parameter": ball(), **ORBIT}
@@ -225,16 +233,16 @@ BOX = {
 }
 # What the file of each statement says beside its schema, statement, model and digest.
 STATEMENTS: dict[str, Callable[[dict[str, Any]], Form]] = {
-    "first impact": lambda _: {
-        "launch": LAUNCH,
+    "first impact": lambda content: {
+        "launch": LAUNCH | at_wall(content),
         "flight_time": ball(1),
-        "velocity": ball(-1),
+        "velocity": ball() if at_wall(content) else ball(-1),
         "tau": ball(),
         "v": ball(1),
     },
-    "periodic orbit": lambda _: {
+    "periodic orbit": lambda content: {
         **ORBIT,
-        "states": [STATE, 1, 1000],
+        "states": [STATE | at_wall(content), 1, 1000],
         "unique_within": number(0, 1),
         "multipliers": [{"real": ball(), "imaginary": ball()}, 0, 2],
     },
@@ -250,7 +258,7 @@ STATEMENTS: dict[str, Callable[[dict[str, Any]], Form]] = {
         | (
             {"states": touching(content), "unique_within": number(0, 1)}
             if content.get("kind") in TOUCHING
-            else {"states": [STATE, 1, 1000]}
+            else {"states": [STATE | at_wall(content), 1, 1000]}
         )
     ),
     "border orbit": lambda _: {
@@ -278,6 +286,7 @@ STATEMENTS: dict[str, Callable[[dict[str, Any]], Form]] = {
 
 
 IN_TIME = ("first impact", "periodic orbit", "chatter limit")  # statements that may be on a model in whose f t occurs
+BETWEEN = ("first impact", "periodic orbit", "event")  # statements that may be on a model with two walls
 
 
 def require_statement(content: Any) -> None:
@@ -292,10 +301,13 @@ def require_form(content: dict[str, Any]) -> None:
     head = {"schema": one_of(SCHEMA), "statement": one_of(*STATEMENTS), "model": MODEL, "digest": digest}
     require(head | STATEMENTS[content["statement"]](content), content)
     model = content["model"]
-    used = re.findall(r"[A-Za-z_]\w*", " ".join(model[part] for part in ("f", "g", "clearance", "restitution")))
+    parts = ("f", "g", "clearance", "restitution", "upper", "upper_restitution")
+    used = re.findall(r"[A-Za-z_]\w*", " ".join(model.get(part, "") for part in parts))
     unused = set(model.get("parameters", ())) - set(used)
     expect(not unused, f"model has the parameter {min(unused, default='')!r}, which it does not use")
     moving = re.search(r"\bt\b", model["f"]) is not None and content["statement"] not in IN_TIME
+    walls = "upper" not in model or (content["statement"] in BETWEEN and content.get("kind") not in TOUCHING)
+    expect(walls, f"of a model with two walls only {', '.join(BETWEEN)} without a graze are checked here")
     expect(not moving, f"f = {model['f']} depends on t: of such a model only {', '.join(IN_TIME)} are checked here")
 
 
@@ -324,7 +336,14 @@ def states(content: dict[str, Any]) -> str:
 
 
 def launch(content: dict[str, Any]) -> str:
-    return f"({content['launch']['tau']}, {content['launch']['v']})"
+    wall = f" at the {content['launch']['wall']} wall" if "wall" in content["launch"] else ""
+    return f"({content['launch']['tau']}, {content['launch']['v']}){wall}"
+
+
+def impacts(content: dict[str, Any]) -> str:
+    """The number of impacts, or between two walls their word."""
+    word = "".join(state.get("wall", "")[:1] for state in content["states"])
+    return word or str(len(content["states"]))
 
 
 def event(content: dict[str, Any]) -> str:
@@ -346,7 +365,7 @@ SENTENCES: dict[str, Callable[[dict[str, Any]], str]] = {
         f"the first impact from {launch(content)}: tau = {with_radius(content['tau'])}, v = {with_radius(content['v'])}"
     ),
     "periodic orbit": lambda content: (
-        f"the ({len(content['states'])}, {content['periods']}) periodic orbit, alone within "
+        f"the ({impacts(content)}, {content['periods']}) periodic orbit, alone within "
         f"{content['unique_within']}: {states(content)}"
     ),
     "chatter limit": lambda content: (

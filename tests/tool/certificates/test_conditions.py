@@ -109,6 +109,11 @@ FORGERIES = {
     "order": ("gamma_at_swan", (("model", "clearance"), "1 - 1e-27")),
     "ends": ("lift_off", (("ends",), "accumulation")),
     "orders": ("gamma", box("D", "5"), box("R", "0"), box("Kl", "1e-9")),
+    # from the lower wall to the upper one, with the same velocity a period later: no orbit of the lower wall alone
+    "wall": ("orbit_between_walls", (("period",), "1"), (("multipliers",), []), (("model",), {
+        "f": "-log(2)*xdot", "g": "cos(2*pi*t)", "clearance": "0", "restitution": "1/2", "upper": "1"}),
+        (("states",), [{"wall": "lower", "tau": number("0.01748691327965217780", "1e-18"),
+                        "v": number("0.69314718055994530942", "1e-18")}])),
 }  # fmt: skip
 
 
@@ -129,6 +134,8 @@ QUICK = {
     "graze",
     "lift_off",
     "accumulation",
+    "impact_between_walls",
+    "orbit_between_walls",
 }
 
 
