@@ -14,7 +14,6 @@ import numpy as np
 from singimpact.algebra.numbers import Array
 from singimpact.branches.closing import Closing, Leg, Turn, minima_of
 from singimpact.branches.starts import closed_from
-from singimpact.flights.derivative import log_determinant
 from singimpact.flights.family import End, Family, Number, Values, family
 from singimpact.flights.flat_numbers import gap_of
 from singimpact.flights.orbits import iterates
@@ -133,22 +132,6 @@ class WallClosing(Closing):
             there = 1 - there
         families = self.family, self.above
         return Leg(families[here], families[there], self.gap(values) if here != there else None)
-
-    def product(self, point: Array) -> float:
-        """The product of the multipliers, by Liouville's formula at every impact; nan at a graze."""
-        sizes, signs, values = 0.0, 1.0, self.values(point)
-        for i, (tau, _, v, time) in enumerate(self.flights(point)):
-            leg = self.leg(i, values)
-            velocity = leg.family.end(values, tau, v, time).place[1]
-            if not v * velocity:
-                return float("nan")
-            assert isinstance(leg.family, WallFamily)
-            assert isinstance(leg.law, WallFamily)
-            # with the restitution of the wall that is hit: one model of one wall has the flight, the other the law
-            osc = leg.family.one_wall(values).replace(restitution=leg.law.one_wall(values).restitution)
-            size = log_determinant(osc, *(np.array([number]) for number in (tau, abs(v), time, -abs(velocity))))
-            sizes, signs = sizes + float(size[0]), signs * np.sign(v)
-        return float(signs * np.exp(sizes))
 
     def minima(self, point: Array) -> list[list[Turn]]:
         """All local minima of each flight, of the distance from its wall, and then of that from the other one."""

@@ -136,6 +136,10 @@ class Family(ABC):
         """The model with these numbers, each the double that it is."""
         return self.osc.replace(**values)
 
+    def one_wall(self, values: Values) -> Oscillator:
+        """The model of one wall that its flights start from."""
+        return self.oscillator(values)
+
     # ---- flights
 
     @abstractmethod
