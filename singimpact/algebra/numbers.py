@@ -173,8 +173,8 @@ def _pi(bits: int) -> Fraction:
     return Fraction(16 * arctan(5) - 4 * arctan(239), one)
 
 
-def as_float(tree: Expression) -> float:
-    """The nearest double of a constant tree.
+def as_float(tree: Expression | None) -> float:
+    """The nearest double of a constant tree; nan where there is no number, such as the period of a model without one.
 
     Raises
     ------
@@ -185,6 +185,8 @@ def as_float(tree: Expression) -> float:
     >>> as_float(constant("tau", "pi/2"))
     1.5707963267948966
     """
+    if tree is None:
+        return math.nan
     try:
         value = float(rational_near(tree, 160))
     except OverflowError:

@@ -64,7 +64,6 @@ class Spans:
     """
 
     def __init__(self, osc: Oscillator, k: int, over: str | None) -> None:
-        assert osc.period is not None
         self.k, self.over = k, over
         moving = osc.period if over is None else period_over(osc, (over,))
         if moving is None:

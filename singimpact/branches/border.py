@@ -229,7 +229,7 @@ class _Search:
             model = self.releases.model(value)
             phases = lift_offs(model)
             if last is not None and len(phases) == len(last[1]):
-                phases = _aligned(phases, last[1], as_float(model.period))  # type: ignore[arg-type]
+                phases = _aligned(phases, last[1], as_float(model.period))
             here = value, phases, [self.releases.orbit(model, phases, index) for index in range(len(phases))]
             if last is not None:
                 self._compared(last, here)
@@ -322,7 +322,7 @@ def _border(returned: Return, spacing: float) -> BorderOrbit:
     """A change of fate with its state next to gamma."""
     model = returned.releases.model(returned.value)
     release, end = returned.ends(model)
-    period = as_float(model.period)  # type: ignore[arg-type]
+    period = as_float(model.period)
     notes: list[str] = []
     gap, tau, v, error = _gap(returned, returned.value)
     width = SETTINGS.width * spacing

@@ -114,7 +114,6 @@ class DigitOrbits:
 
     def _zeros(self, model: Oscillator) -> tuple[ContactZero, ContactZero]:
         """The zeros of a_c where the orbit begins and ends."""
-        assert model.period is not None
         before = SETTINGS.before * as_float(model.period)
         found = [next_zero(model, Number(Fraction(time - before))).zero for time in self.found.ends(model)]
         if found[0] is None or found[1] is None or found[1].order != 1:

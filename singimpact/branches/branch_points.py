@@ -228,25 +228,9 @@ def _doubling(search: StepSearch, crossing: Crossing, equal: bool) -> BranchPoin
     start = curve.begin(guess)
     if start is None:
         return None
-    previous = start.at, half.at(start.at).characteristic().doubling
-    moved = curve.beyond(start, 1e-6)
-    lengths = 0.0, 1e-6
-    if moved is None:
+    root = _doubled_along(curve, start, half)
+    if root is None:
         return None
-    latest = moved[0].at, half.at(moved[0].at).characteristic().doubling
-    for _ in range(SETTINGS.secants):
-        slope = (latest[1] - previous[1]) / (lengths[1] - lengths[0]) if lengths[1] != lengths[0] else 0.0
-        if not slope:
-            break
-        length = lengths[1] - latest[1] / slope
-        step = curve.beyond(start, length) if abs(length) < 1 else None
-        if step is None:
-            return None
-        previous, latest = latest, (step[0].at, half.at(step[0].at).characteristic().doubling)
-        lengths = lengths[1], length
-        if abs(lengths[1] - lengths[0]) <= SETTINGS.arrived:
-            break
-    root = latest[0]
     at = root
     if isinstance(closing, Closing) and isinstance(half, Closing):
         at = repeated(half, closing, root)
@@ -260,6 +244,28 @@ def _doubling(search: StepSearch, crossing: Crossing, equal: bool) -> BranchPoin
         following = _alternating(half, closing, root) if n else []
     along = float(search.here.tangent @ ((at - search.here.at) / scales))
     return BranchPoint(PITCHFORK, along, at, following[0] if following else None)
+
+
+def _doubled_along(curve: Curve, start: Point, half: AnyClosing) -> Array | None:
+    """The point next to the start of a curve of orbits at which they double; None where it is not reached."""
+    from scipy.optimize import root_scalar
+
+    points = {0.0: start.at}
+
+    def test(length: float) -> float:
+        if length not in points:
+            step = curve.beyond(start, length) if abs(length) < 1 else None
+            if step is None:
+                raise ArithmeticError
+            points[length] = step[0].at
+        return half.at(points[length]).characteristic().doubling
+
+    try:
+        root = root_scalar(test, method="secant", x0=0.0, x1=1e-6, xtol=SETTINGS.arrived, maxiter=SETTINGS.secants).root
+        test(root)
+    except ArithmeticError:
+        return None
+    return points[root]
 
 
 def _crossing(search: StepSearch, crossing: Crossing) -> BranchPoint | None:

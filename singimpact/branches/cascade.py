@@ -71,7 +71,6 @@ def settled_orbit(osc: Oscillator, tau: Any, v: Any = 0) -> PeriodicOrbit | None
     >>> print(found.n, found.k, f"{found.v[0]:.12f}")
     1 2 0.533333333333
     """
-    assert osc.period is not None
     period, n = as_float(osc.period), 0
     for _ in range(SETTLED.rounds):
         flown = orbit(osc, tau, v, impacts=SETTLED.impacts)

@@ -209,7 +209,6 @@ def closed_boxes(
     >>> found, boxes.complete
     ([], True)
     """
-    assert osc.period is not None
     period = Fraction(as_float(osc.period))
     window = (-period / 64, period * Fraction(65, 64)), speeds
     with balls_at(SEARCH.bits):

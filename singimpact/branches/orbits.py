@@ -177,7 +177,6 @@ class PeriodicOrbit(OfImpacts):
 
 def chatter_orbit(osc: Oscillator, lift_off: float, k: int, miss: float) -> PeriodicOrbit:
     """The orbit that chatters, rests and lifts off again k periods later, with that miss."""
-    assert osc.period is not None
     phase = np.mod(lift_off, as_float(osc.period))
     return PeriodicOrbit(
         np.array([phase]), np.zeros(1), np.zeros(2), miss, np.int8(Status.hit), osc, np.inf, k, "chatter"

@@ -129,7 +129,6 @@ class Releases:
 
 
 def _period(model: Oscillator) -> float:
-    assert model.period is not None
     return as_float(model.period)
 
 

@@ -126,7 +126,6 @@ def chatter_orbits(osc: Oscillator, k: int) -> PeriodicOrbits:
     >>> round(float(found.tau[0]), 6), found.stable
     (2.743893, True)
     """
-    assert osc.period is not None
     phases, notes = list(lift_offs(osc)), Notes()
     following = [_next_lift_off(osc, phases, index, k, notes) for index in range(len(phases))]
     orbits = list[PeriodicOrbit]()
@@ -155,7 +154,6 @@ class _Lift:
 
 def _next_lift_off(osc: Oscillator, phases: list[float], index: int, k: int, notes: Notes) -> _Lift | None:
     """The lift-off within k periods after the one at phases[place]; None where there is none, or it is open: noted."""
-    assert osc.period is not None
     period, phase = as_float(osc.period), phases[index]
     end = phase + (k + 1) * period
     # an orbit of k periods is home by then: what an undamped one does later may be undecided in doubles, and slow

@@ -134,5 +134,4 @@ def _plain(multipliers: Array) -> Array:
 
 def orbit_period(orbit: PeriodicOrbit) -> float:
     """The period of the forcing of an orbit's model."""
-    assert orbit.oscillator.period is not None
     return as_float(orbit.oscillator.period)

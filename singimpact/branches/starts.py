@@ -71,7 +71,6 @@ def two_impacts(osc: Oscillator, k: int) -> tuple[list[Array], IsolatedZeros] | 
     flights = _formulas(osc, k)
     if flights is None:
         return None
-    assert osc.period is not None
     period = as_float(osc.period)
     with balls_at(SEARCH.bits):
         end = evaluate(flights.span, {}, Balls(SEARCH.bits))
@@ -144,7 +143,6 @@ def phases_and_speeds(osc: Oscillator, k: int) -> tuple[Array, Array] | None:
     """
     flights = family(osc)
     assert isinstance(flights, LinearFamily)
-    assert osc.period is not None
     period, r = as_float(osc.period), as_float(osc.restitution)
     time = k * period
     flow = flights.flow({}, time)[:2]

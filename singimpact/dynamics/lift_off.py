@@ -70,7 +70,6 @@ def next_lift_offs(osc: Oscillator, times: Array) -> tuple[Array, Array]:
     >>> abs(phases).max() < 1e-15, turns.tolist()
     (np.True_, [1.0, 1.0, 0.0])
     """
-    assert osc.period is not None
     period, lifted = as_float(osc.period), list[float]()
     turns = np.floor(times / period)
     begun, phases = times - turns * period, np.full(times.size, np.nan)

@@ -118,7 +118,7 @@ def _presses(states: States) -> Array:
 
 def _from_leaving(osc: Oscillator, times: Array) -> ReleaseMap:
     """The map at times, shape (n,), at which the mass leaves the wall at once; inf and nan are of a rest for ever."""
-    period, size = as_float(osc.period), times.size  # type: ignore[arg-type]
+    period, size = as_float(osc.period), times.size
     empty = np.full(size, np.nan)
     flat, status = np.zeros(size, bool), np.where(np.isnan(times), Status.unresolved, Status.sticks).astype(np.int8)
     result = ReleaseMap(times, empty, times.copy(), empty.copy(), empty.copy(), flat, status, period)
