@@ -197,7 +197,7 @@ def _may_have_walls(value: object) -> bool:
     return hasattr(value, "oscillator") or getattr(value, "upper", None) is not None
 
 
-def _require_one_wall(name: str, values: Sequence[Any], named: dict[str, Any]) -> None:
+def require_one_wall(name: str, values: Sequence[Any], named: dict[str, Any]) -> None:
     """Refuse a model with two walls: it would be taken for one with its lower wall alone."""
     for value in (*values[:2], *named.values()):
         value = getattr(value, "oscillator", value)  # of an orbit, or of an event
@@ -228,7 +228,7 @@ def checked_keywords(function: Callable[P, T]) -> Callable[P, T]:
     @wraps(function)
     def checked(*values: P.args, **named: P.kwargs) -> T:
         if guarded and (len(values) <= first or _may_have_walls(values[first]) or "model" in named):
-            _require_one_wall(name, values, named)
+            require_one_wall(name, values, named)
         if callable(mark) and "wall" in named:
             rest: dict[str, Any] = dict(named)
             wall = rest.pop("wall")

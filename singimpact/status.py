@@ -33,6 +33,7 @@ class Status(IntEnum):
     lifts_off = 7
     no_rebound = 8
     none = 9
+    other_wall = 10
 
     @property
     def sentence(self) -> str:
@@ -53,6 +54,8 @@ _SENTENCES = {
     Status.lifts_off: "contact is lost before the impacts accumulate",
     Status.none: "no gamma lies ahead, for a_c stays negative after this phase: the mass is pressed for ever, and no v "
     "separates complete from incomplete chatter; v is nan: give a clearance for which a_c has a zero",
+    Status.other_wall: "chatter completes below v, and from v on a flight meets the other wall: gamma lies above v, or "
+    "none lies ahead",
 }
 
 

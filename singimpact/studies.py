@@ -44,6 +44,10 @@ def swan_points(
         `.tau`, `.clearance` (c_0), `.kind` ("positive" | "negative"), `.certified(digits)` and
         `.oscillator(restitution)`, the model exactly at c_0.
 
+    Notes
+    -----
+    A wall above, x <= u, has swans at the same places u = c_0 and times, of the other kind.
+
     Examples
     --------
     >>> [(swan.kind, swan.clearance) for swan in swan_points("x", "cos(2*t)")]
@@ -188,7 +192,8 @@ def bifurcation(
 
 
 @checked_keywords
-def classify(osc: Oscillator, window: Any = None, between: Any = None) -> Classification:
+@takes_two_walls
+def classify(osc: Oscillator, window: Any = None, between: Any = None, *, wall: object = None) -> Classification:
     """The singular points of p and phi on V_c': tangencies, swans, cusps, and the fold lines between them.
 
     Parameters
@@ -196,6 +201,9 @@ def classify(osc: Oscillator, window: Any = None, between: Any = None) -> Classi
     osc : the model. window : ((tau_low, tau_high), (t_low, t_high)); without it one period of tau and as much on both
         sides of t = 0, or a window with all zeros of a_c if g is a polynomial.
     between : interval of clearances in which swans are searched; by default all, where they can be isolated.
+    wall : of a model with two: "lower" (also without it) or "upper", whose points are those of `osc.mirrored`, with
+        clearances that are minus the heights of the wall. Flights that meet the other wall are left out; swans and
+        tangencies, which are no flights, are those of one wall.
 
     Returns
     -------
@@ -210,11 +218,13 @@ def classify(osc: Oscillator, window: Any = None, between: Any = None) -> Classi
     from singimpact.surface.classification import classify
 
     tau, t = (None, None) if window is None else _two_ends(window, "((tau_low, tau_high), (t_low, t_high))")
-    return classify(osc, tau, t, None if between is None else interval(between))
+    _require_model(osc)
+    return classify(osc.seen_from(wall), tau, t, None if between is None else interval(between))
 
 
 @checked_keywords
-def grown_gamma(osc: Oscillator, window: Any = None, tau: Any = None) -> list[Curve]:
+@takes_two_walls
+def grown_gamma(osc: Oscillator, window: Any = None, tau: Any = None, *, wall: object = None) -> list[Curve]:
     """gamma as curves: from its series at a tangency or swan point to the edge of a window of states.
 
     Parameters
@@ -222,6 +232,7 @@ def grown_gamma(osc: Oscillator, window: Any = None, tau: Any = None) -> list[Cu
     osc : the model. window : ((tau_low, tau_high), (v_low, v_high)); without it a period on both sides of tau = 0 (the
         zeros of a_c with a margin, if g is a polynomial) and (0, 2).
     tau : the point; without one the first that has an invariant curve.
+    wall : of a model with two: "lower" (also without it) or "upper"; curves end where a flight meets the other one.
 
     Returns
     -------
@@ -243,6 +254,7 @@ def grown_gamma(osc: Oscillator, window: Any = None, tau: Any = None) -> list[Cu
     from singimpact.surface.curve import STATES, Window
 
     _require_model(osc)
+    osc = osc.seen_from(wall)
     if not isinstance(window, Window):
         low, high = default_window(osc)[0]
         usual = ((low - high if osc.period is not None else low, high), (0, 2))

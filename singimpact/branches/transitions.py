@@ -20,13 +20,13 @@ from singimpact.branches.events import Event
 from singimpact.branches.orbits import PeriodicOrbit, same_states
 from singimpact.branches.periodic import periodic
 from singimpact.dynamics.basins_of_attraction import Basins, basins
-from singimpact.inputs import InputError, checked_keywords, refuse, whole
+from singimpact.inputs import InputError, checked_keywords, refuse, takes_two_walls, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import RESTITUTION, with_number
 from singimpact.oscillator.wall_acceleration import largest_push
 from singimpact.surface.classification import default_window
 from singimpact.surface.curve import window_ends
-from singimpact.surface.outline_transitions import Transitions, transitions as transitions_of_outline
+from singimpact.surface.outline_transitions import Transitions, at_wall as transitions_of_outline
 from singimpact.surface.swan_families import Transition
 
 SEEN_ALONE = ("tacnode", "triple point")
@@ -199,6 +199,7 @@ class BothSides:
 
 
 @checked_keywords
+@takes_two_walls
 def transitions(
     osc: Oscillator,
     over: str = "clearance",
@@ -207,6 +208,7 @@ def transitions(
     *,
     orbits: Any = None,
     kinds: Any = None,
+    wall: object = None,
 ) -> Transitions:
     """Where P changes its kind as a number of the model moves, and what happens to periodic orbits on the way.
 
@@ -220,6 +222,8 @@ def transitions(
         "triple point", "periodic graze"; all without it.
     orbits : a whole number m, for the orbits of n impacts in k periods, n, k <= m, the one without impact and those
         with complete chatter; or pairs (n, k). Without it P alone is looked at.
+    wall : of a model with two: "lower" (also without it) or "upper", moved by over="upper". Flights that meet the other
+        wall are in the list, not visible; orbits= takes a model with one.
 
     Returns
     -------
@@ -255,7 +259,10 @@ def transitions(
     pairs = None if orbits is None else _pairs(orbits)
     if pairs is not None and osc.period is None:
         raise InputError("the forcing has no period: periodic orbits need one")
-    changes = transitions_of_outline(osc, over, between, default_window(osc)[1] if t is None else t, kinds)
+    if pairs is not None and osc.upper is not None:
+        raise refuse("orbits", orbits, "None for a model with two walls, or osc.one_wall('lower')")
+    times = default_window(osc.seen_from(wall))[1] if t is None else t
+    changes = transitions_of_outline(osc, wall, over, between, times, kinds)
     if pairs is None:
         return changes
     return _Search(changes, osc, over, window_ends(over, between), pairs).found()

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, TypeGuard
 
 import click
 
-from singimpact.cli.model_options import model_options, take_model
+from singimpact.cli.model_options import model_options, take_model, wall_option
 from singimpact.cli.output import as_json_text, columns, emit, output_options
 from singimpact.inputs import InputError
 
@@ -37,6 +37,7 @@ CHANGE = ("kind", "value", "n", "k", "below", "above")
     metavar="M",
     help="With --over: also the orbits of n impacts in k periods, n, k <= M, between these transitions.",
 )
+@wall_option
 @output_options
 def command(
     window_tau: tuple[str, str] | None,
@@ -44,6 +45,7 @@ def command(
     over: str | None,
     between: tuple[str, str] | None,
     orbits: int | None,
+    wall: str | None,
     as_json: bool,
     output: str | None,
     **options: str | None,
@@ -64,23 +66,23 @@ def command(
     from singimpact.surface.classification import classify
 
     swans_between = interval(between) if between is not None and over in (None, "clearance") else None
-    points = classify(oscillator, window_tau, window_t, swans_between)
-    changes = None if over is None else _transitions(oscillator, over, between, points.t, orbits)
+    points = classify(oscillator.seen_from(wall), window_tau, window_t, swans_between)
+    changes = None if over is None else _transitions(oscillator, wall, over, between, points.t, orbits)
     if as_json:
         emit(as_json_text({"model": oscillator.to_dict(), **_as_listed(points, over, changes)}), output)
     else:
         emit(_text(points, over, changes), output)
 
 
-def _transitions(oscillator: Any, over: str, between: Any, t: Any, orbits: int | None) -> Transitions:
+def _transitions(oscillator: Any, wall: str | None, over: str, between: Any, t: Any, orbits: int | None) -> Transitions:
     """Without orbits nothing of branches is loaded, which takes 0.2 s."""
     if orbits is None:
-        from singimpact.surface.outline_transitions import transitions
+        from singimpact.surface.outline_transitions import at_wall
 
-        return transitions(oscillator, over, between, t)
+        return at_wall(oscillator, wall, over, between, t)
     from singimpact.branches.transitions import transitions as with_orbits
 
-    return with_orbits(oscillator, over, between, t, orbits=orbits)
+    return with_orbits(oscillator, over, between, t, orbits=orbits, wall=wall)
 
 
 def _with_orbits(changes: Transitions) -> TypeGuard[OrbitTransitions]:

@@ -82,7 +82,7 @@ def _from_file(path: str, numbers: dict[str, str]) -> ImpactOscillator:
 def wall_option(function: Function) -> Function:
     """``--wall lower`` or ``--wall upper``."""
     kinds = click.Choice(["lower", "upper"])
-    return click.option("--wall", type=kinds, help="Wall of the state, of a model with two walls.  [default: lower]")(
+    return click.option("--wall", type=kinds, help="Wall of the states, of a model with two walls.  [default: lower]")(
         function
     )
 

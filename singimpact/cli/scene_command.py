@@ -15,9 +15,9 @@ from singimpact.cli.output import as_json_text, columns, picture_option, save
 def command(file: str, output: str, as_json: bool) -> None:
     """Draw a scene: a model, a window and layers, from a TOML file.
 
-    Layers of the (tau, t)-plane: horizon, zero-set, visible, shadow. Layers of the (tau, v)-plane: outline,
-    discontinuities, gamma, stable-manifolds, foliation, orbits. What is computed, what it took and what came from the
-    cache is printed.
+    Layers of the (tau, t)-plane: horizon, zero-set, visible, shadow, cut, beyond. Layers of the (tau, v)-plane:
+    outline, discontinuities, gamma, stable-manifolds, foliation, orbits. Of a model with two walls the file names one,
+    wall = "upper". What is computed, what it took and what came from the cache is printed.
     """
     from singimpact.scenes.scene import DPI, Scene
 

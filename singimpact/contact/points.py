@@ -16,7 +16,7 @@ from singimpact.algebra.isolated_zeros import isolate
 from singimpact.algebra.numbers import as_float
 from singimpact.algebra.precision import Ladder, balls_at, digits_at, for_user, kept_property
 from singimpact.contact.contact import acceleration
-from singimpact.inputs import InputError, checked_keywords, whole
+from singimpact.inputs import InputError, checked_keywords, takes_two_walls, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.result import Result, Results
 
@@ -115,12 +115,14 @@ KINDS = {1: "gamma", -1: "foliation"}
 
 
 @checked_keywords
-def tangency_points(osc: Oscillator, digits: int = 30) -> TangencyPoints:
+@takes_two_walls
+def tangency_points(osc: Oscillator, digits: int = 30, *, wall: object = None) -> TangencyPoints:
     """The zeros of a_c over one period [0, T), or all real zeros when g is a polynomial.
 
     Parameters
     ----------
     digits : significant ones that `certified` of the points gives.
+    wall : of a model with two walls: "lower" (also without it) or "upper", where a' is that of x -> -x.
 
     Raises
     ------
@@ -132,6 +134,7 @@ def tangency_points(osc: Oscillator, digits: int = 30) -> TangencyPoints:
     >>> points.kind, points.tau.round(6).tolist()
     (('foliation', 'gamma'), [0.633052, 2.508541])
     """
+    osc = osc.seen_from(wall)
     points = TangencyPoints(_points(osc))
     points.digits = whole("digits", digits, 1, MOST_DIGITS)
     a_c = acceleration(osc)

@@ -1,7 +1,8 @@
 """Invariant curves beyond their series: gamma and the stable manifolds W^s_tau, grown by the inverse of the map.
 
 A fundamental piece lies where the series is accurate; its inverse images follow one another (`growth`), and errors
-across the curve shrink.
+across the curve shrink.  Curves of a model with two walls are those of its lower one, without the states from which the
+upper one is met.
 """
 
 from dataclasses import dataclass, replace
@@ -13,13 +14,14 @@ from singimpact.algebra.expressions import names_in
 from singimpact.algebra.numbers import Array, as_float
 from singimpact.contact.points import tangency_points
 from singimpact.dynamics.growth import SETTINGS as GROWTH, Carried, Piece, adds, held
-from singimpact.flights.impact_map import first_hit
+from singimpact.flights.impact_map import first_hit, impact_map
 from singimpact.flights.inverse_map import backwards, inverse_map
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration
-from singimpact.status import Status
+from singimpact.status import Wall
 from singimpact.surface.curve import STATES, Curve, Mark, Window
+from singimpact.surface.other_wall import at_lower_wall
 from singimpact.theory.contact_points import points_of
 from singimpact.theory.formulas import arc_in_numbers
 from singimpact.theory.power_series import PowerSeries
@@ -32,6 +34,9 @@ class ArcSettings:
     order: int = 12  # of the series
     trust: float = 1e-13  # relative truncation error of the series on the fundamental piece
     tolerance: float = 1e-13  # of a flight: thousands are flown, and more digits change no curve visibly
+    # a series is halved until flights from this number of its states, or from all of this length, meet no other wall
+    samples: int = 64
+    least: float = 1e-3
 
 
 SETTINGS = ArcSettings()
@@ -61,6 +66,7 @@ def grown_gamma(model: Oscillator, window: Window, tau: Any = None, trust: float
     foot = _foot(model, tau, at)
     # a series that ends is exact everywhere
     size = min(series.valid_within(trust), motion.valid_within(trust), float(window.sides[0]))
+    size = _below_the_other_wall(model, foot, series, size)
     return _grown(model, window, foot, series, -size, float(motion(-size)))
 
 
@@ -107,10 +113,20 @@ def stable_manifold(model: Oscillator, window: Window, tau: Any) -> list[Curve]:
     if not float(acceleration(model, np.array([foot]))[0]) < 0:
         raise refuse("tau", tau, "a time with a_c < 0: chatter comes to rest there, and W^s_tau exists")
     series, _ = arc_in_numbers(SETTINGS.order, 0, model, tau)
-    size = series.valid_within(SETTINGS.trust)
+    size = _below_the_other_wall(model, foot, series, series.valid_within(SETTINGS.trust))
     # along the fibre the map contracts by r to first order; the computed image bounds the fundamental piece
     landed = model_step(model, np.array([[foot - size, float(series(-size))]]))[0, 0] - foot
     return _grown(model, window, foot, series, -size, float(landed))
+
+
+def _below_the_other_wall(model: Oscillator, foot: float, series: PowerSeries, size: float) -> float:
+    """A part of the length of a series from whose states no flight meets an upper wall."""
+    while model.upper is not None and size > SETTINGS.least:
+        s = -size * (np.arange(SETTINGS.samples) + 1) / SETTINGS.samples
+        if not (impact_map(model, foot + s, np.maximum(series(s), 0.0)).wall == Wall.upper).any():
+            break
+        size /= 2
+    return size
 
 
 def _curved(model: Oscillator, tau: Any) -> str:
@@ -137,12 +153,10 @@ def model_step(model: Oscillator, points: Array, horizon: float | None = None) -
 
     `horizon` : time after which a flight is given up.
     """
-    from singimpact.flights.impact_map import impact_map
-
     images, regular = np.full(points.shape, np.nan), np.isfinite(points).all(axis=1) & (points[:, 1] >= 0)
     at, v_at = points[regular].T
     step = impact_map(model, at, v_at, tolerance=SETTINGS.tolerance, horizon=horizon)
-    good = np.isin(step.status, (Status.hit, Status.graze))
+    good = at_lower_wall(step)
     images[regular] = np.where(good[:, None], np.stack([step.tau, step.v], axis=1), np.nan)
     return images
 
@@ -153,12 +167,11 @@ def before(model: Oscillator, points: Array, horizon: float | None = None) -> Ar
     at, v_at = points[regular].T
     if names_in(model.restitution):
         step = inverse_map(model, at, v_at, horizon=horizon)
-        tau, v, status = step.tau, step.v, step.status
+        tau, v, good = step.tau, step.v, at_lower_wall(step)
     else:
         speeds = v_at / as_float(model.restitution)
         hit = first_hit(backwards(model), -at, speeds, tolerance=SETTINGS.tolerance, horizon=horizon)
-        tau, v, status = at - hit.flight_time, -hit.velocity, hit.status
-    good = np.isin(status, (Status.hit, Status.graze))
+        tau, v, good = at - hit.flight_time, -hit.velocity, at_lower_wall(hit)
     images[regular] = np.where(good[:, None], np.stack([tau, v + 0.0], axis=1), np.nan)
     return images
 

@@ -18,15 +18,16 @@ from singimpact.dynamics.remaining import chatter_completes, power_of_gamma, res
 from singimpact.flights.blocks import gathered
 from singimpact.flights.compiled_model import compiled_model
 from singimpact.flights.derivative import derivative
+from singimpact.flights.flat_numbers import gap_of
 from singimpact.flights.impact_map import checked_digits, impact_map
 from singimpact.flights.kernels.gamma import TERMS_OF_GAMMA
 from singimpact.flights.orbits import orbit_segment
 from singimpact.flights.states import require_room
-from singimpact.inputs import InputError, checked_keywords, whole
+from singimpact.inputs import InputError, checked_keywords, takes_two_walls, whole
 from singimpact.oscillator.model import Oscillator, require_rebound, require_smooth_rho
 from singimpact.oscillator.wall_acceleration import acceleration, sign_of_acceleration
 from singimpact.result import Result, in_words
-from singimpact.status import Status
+from singimpact.status import Status, Wall
 from singimpact.theory.contact_points import Place
 from singimpact.theory.formulas import curve_at
 
@@ -58,6 +59,10 @@ class Search:
     rough: float = 2.0**-5
     steps: int = 8
     widths: tuple[float, ...] = (2 * EPSILON, 16 * EPSILON, 256 * EPSILON)
+    # launch speeds up to gamma, evenly spaced, whose chatter is looked at for impacts with a second wall
+    speeds: int = 64
+    halvings: int = 60  # of the step in which such an impact appears
+    over: float = 1e-3  # a chatter is over for this when less is left of it, of the time on which a_c changes
 
 
 SEARCH = Search()
@@ -72,6 +77,7 @@ NOTES = {
 @dataclass(frozen=True, repr=False)
 class Threshold(Result):
     """The velocity `v`, an estimate of its `error`, and a status: `complete`; `none` where no gamma lies ahead;
+    `other_wall` where a second wall is met from v on, below gamma;
     `unresolved` where the next zero of a_c, its contact order or the two sides of gamma are not decided.
 
     `certified` is v with a proved radius, with digits= where the restitution is a number: the interval contains a
@@ -93,7 +99,10 @@ class Threshold(Result):
 
 
 @checked_keywords
-def threshold(osc: Oscillator, tau: Any, *, digits: int | None = None, impacts: int = SEARCH.impacts) -> Threshold:
+@takes_two_walls
+def threshold(
+    osc: Oscillator, tau: Any, *, digits: int | None = None, impacts: int = SEARCH.impacts, wall: object = None
+) -> Threshold:
     """The velocity on gamma at tau: its orbit converges to the next zero of a_c.
 
     Gamma ends where a_c rises through zero (contact order 1, 3, ...) or touches it from below (2, 4, ...: a swan).
@@ -104,6 +113,8 @@ def threshold(osc: Oscillator, tau: Any, *, digits: int | None = None, impacts: 
     tau : a phase with a_c(tau) < 0, or an array of them: the fields then have its shape.
     digits : decimal digits; v is then an mpmath number.
     impacts : at most for one velocity; if they do not decide the side the status is `unresolved`.
+    wall : of a model with two: "lower" (also without it) or "upper". Gamma is that of this wall alone; chatter from
+        64 speeds below it is looked at, and where one meets the other wall v is the least such speed, in doubles.
 
     Examples
     --------
@@ -111,10 +122,14 @@ def threshold(osc: Oscillator, tau: Any, *, digits: int | None = None, impacts: 
     >>> print(f"{found.v:.13f}")
     0.1008699912693
     """
+    osc = osc.seen_from(wall)
     if isinstance(tau, list | tuple | np.ndarray) and np.ndim(tau):
         require_room(("tau", tau))
         thresholds = [threshold(osc, one, digits=digits, impacts=impacts) for one in np.asarray(tau).ravel().tolist()]
         return gathered(Threshold, thresholds, np.shape(tau))  # type: ignore[no-any-return]
+    if osc.upper is not None:
+        alone = threshold(osc.one_wall(), tau, digits=digits, impacts=impacts)
+        return _between_walls(osc, constant("tau", tau), replace(alone, certified=None))
     require_rebound(osc, "a threshold between complete and incomplete chatter")
     phase, most = constant("tau", tau), whole("impacts", impacts, 1, 10**7)
     if sign_of_acceleration(osc, phase) >= 0:
@@ -137,6 +152,49 @@ def threshold(osc: Oscillator, tau: Any, *, digits: int | None = None, impacts: 
     return _enclosed(osc, phase, rough, ahead.zero, checked_digits(digits)) or _refined(
         osc, phase, rough, ahead.zero, digits
     )
+
+
+def _between_walls(osc: Oscillator, phase: Expression, alone: Threshold) -> Threshold:
+    """The threshold of the lower wall alone, or the least launch speed from which the upper wall is met before.
+
+    Parameters
+    ----------
+    osc : with two walls. alone : the threshold of the model with the lower one.
+    """
+    ahead, tau = next_zero(osc, phase), as_float(phase)
+    end = np.inf if ahead.zero is None else ahead.zero.tau
+    if alone.status == Status.unresolved:
+        return alone
+
+    def is_met(v: float) -> bool:
+        start, speed = tau, v
+        for count, over in ((SEARCH.longest, SEARCH.over), (1, 0.0)):  # flights of the rest are lower than its first
+            segment = orbit_segment(osc, start, speed, count, over)
+            if ((segment.wall == Wall.upper) & (segment.tau < end)).any():
+                return True
+            if segment.tau.size:
+                start, speed = float(segment.tau[-1]), float(segment.v[-1])
+        return False
+
+    top = float(alone.v)
+    if alone.status == Status.none:
+        top = float(np.sqrt(-2 * acceleration(osc, np.array([tau]))[0] * gap_of(osc)[0]))
+        while not is_met(top) and top < 1e12:
+            top *= 2
+    speeds = np.linspace(0.0, top, SEARCH.speeds + 1).tolist()
+    first = next((at for at, v in enumerate(speeds[1:], start=1) if is_met(v)), None)
+    if first is None:
+        return alone
+    low, high = speeds[first - 1], speeds[first]
+    for _ in range(SEARCH.halvings):
+        middle = (low + high) / 2
+        if not low < middle < high:
+            break
+        low, high = (low, middle) if is_met(middle) else (middle, high)
+    # the height of a flight is known to roundings of both places, and rises with v like the time to its highest point
+    size = gap_of(osc)[0] + 2 * abs(as_float(osc.clearance)) + high**2
+    error = high - low + 128 * EPSILON * (high + size / high)
+    return Threshold(np.float64(high), np.float64(error), np.int8(Status.other_wall))
 
 
 def _without(status: Status) -> Threshold:

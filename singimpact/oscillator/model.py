@@ -164,10 +164,24 @@ class Oscillator:
         >>> Oscillator("x", "cos(2*t)", "-0.5", "0.6", upper="0.7").one_wall("upper")
         Oscillator(f='x', g='-cos(2*t)', clearance='-0.7', restitution='0.6')
         """
-        code = wall_of(wall)
+        return self.seen_from(wall).replace(upper=None, upper_restitution=None)
+
+    def seen_from(self, wall: object = None) -> Self:
+        """The model whose lower wall is a named one: this model, or at the upper wall the `mirrored` one.
+
+        Parameters
+        ----------
+        wall : as for `one_wall`, or None for the lower one.
+
+        Examples
+        --------
+        >>> Oscillator("x", "cos(2*t)", "-0.5", "0.6", upper="0.7").seen_from("upper").clearance
+        Number(value=Fraction(-7, 10))
+        """
+        code = 0 if wall is None else wall_of(wall)
         if code < 0 or (code and self.upper is None):
             raise refuse("wall", wall, "'lower' or 'upper'" if self.upper is not None else "'lower': the model has one")
-        return (self.mirrored if code else self).replace(upper=None, upper_restitution=None)
+        return self.mirrored if code else self
 
     def force(self, keep: Collection[str] = ()) -> Expression:
         """f with the parameters' values put in; those in `keep` stay letters."""

@@ -14,7 +14,7 @@ from singimpact.algebra.rings import DOUBLES
 from singimpact.contact.points import is_polynomial
 from singimpact.contact.swans import SwanPoint, swan_points_over_clearance, swans_are_listed
 from singimpact.dynamics.invariant_arcs import grown_gamma
-from singimpact.inputs import refuse
+from singimpact.inputs import refuse, require_one_wall
 from singimpact.oscillator.model import Oscillator, require_rebound
 from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.studies import interval
@@ -147,6 +147,7 @@ def clearance_film(
     """
     if not isinstance(model, Oscillator):
         raise refuse("model", model, "an ImpactOscillator")
+    require_one_wall("explore", (model,), {})
     require_rebound(model, "the page, which draws gamma,")
     if isinstance(steps, bool) or not isinstance(steps, int) or not 2 <= steps <= 1001:
         raise refuse("steps", steps, "a whole number from 2 to 1001")

@@ -282,7 +282,7 @@ def plot(
         bifurcation diagram, a branch or an event curve or a list of them, W^s or W^u of a saddle or a list of them, the
         points where two cross, a certified orbit in which they do, a certified horseshoe, a border orbit, of which the
         cascade is drawn, both sides of a transition (on two axes), a curve or a list of curves of one plane, or an
-        impact surface, of which Z and H are drawn.
+        impact surface, of which Z and H are drawn, with the cut at a second wall.
     ax : where to draw; those of a new figure of pyplot when it is not given, so that a notebook shows it and
         `matplotlib.pyplot.show()` does. Branches drawn on the axes of a bifurcation diagram keep its limits, and so do
         manifolds on those of basins, and a certified orbit on those of manifolds.
@@ -349,7 +349,7 @@ def _drawn(thing: Any, axes: Axes, height: str) -> Any:
     if isinstance(thing, Scene):
         return thing.draw(axes)
     if isinstance(thing, ImpactSurface):
-        thing = [*thing.zero_set, *thing.horizon]
+        thing = [*thing.zero_set, *thing.horizon, *thing.beyond, *thing.cut]
     if isinstance(thing, Bifurcation):
         return draw_bifurcation(thing, _new_axes() if axes is None else axes, height)
     if isinstance(thing, BothSides):

@@ -18,11 +18,13 @@ from singimpact.dynamics.orbit import orbit
 from singimpact.flights.results import counted
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration
+from singimpact.status import Wall
 from singimpact.store import cache_folder
-from singimpact.surface.curve import STATES, SURFACE, Curve, Mark, Window
+from singimpact.surface.curve import STATES, Curve, Mark, Window
 from singimpact.surface.impact_surface import ImpactSurface, NamedLine
 
-STORED = ("lines", "visible", "shadow", "gamma", "stable-manifolds", "foliation", "orbits")  # the rest costs no flight
+STORED = ("lines", "beyond", "cut", "visible", "shadow", "gamma", "stable-manifolds", "foliation", "orbits")
+"""Needs that are read from the cache; the rest costs no flight."""
 
 
 class Shown(Protocol):
@@ -30,6 +32,8 @@ class Shown(Protocol):
 
     @property
     def osc(self) -> Oscillator: ...
+    @property
+    def seen(self) -> Oscillator: ...
     @property
     def tau(self) -> tuple[float, float]: ...
     @property
@@ -91,7 +95,7 @@ class Results:
     def surface(self) -> ImpactSurface:
         """V_c' of the scene; what is known of it is not flown again."""
         scene = self.scene
-        return ImpactSurface(scene.osc, scene.tau, scene.times, 1 / scene.pixels)
+        return ImpactSurface(scene.seen, scene.tau, scene.times, 1 / scene.pixels)
 
     @property
     def states(self) -> Window:
@@ -100,22 +104,12 @@ class Results:
 
 
 def _lines(results: Results) -> list[Curve]:
-    return [_stored(line) for line in results.surface.lines]
-
-
-def _stored(line: NamedLine) -> Curve:
-    points = np.column_stack([line.points, line.column])
-    return Curve("lines", points, SURFACE, line.marks, line.closed, line.tolerance)
+    return [line.curve for line in results.surface.lines]
 
 
 def _of_surface(name: str) -> Callable[[Results], list[Curve]]:
     def compute(results: Results) -> list[Curve]:
-        shared: dict[str, list[Any]] = {
-            "lines": [
-                NamedLine(curve.points[:, :2], curve.points[:, 2], curve.closed, curve.tolerance, curve.marks)
-                for curve in results.get("lines")
-            ]
-        }
+        shared: dict[str, list[Any]] = {"lines": [NamedLine.of(curve) for curve in results.get("lines")]}
         if "visible" in results.found:
             shared["horizon"] = results.found["visible"]
         results.surface.take(**shared)
@@ -132,11 +126,11 @@ def _visible(results: Results) -> list[Curve]:
 
 
 def _gamma(results: Results) -> list[Curve]:
-    return gammas_within(results.scene.osc, results.states)
+    return gammas_within(results.scene.seen, results.states)
 
 
 def _manifolds(results: Results, feet: Iterable[Any]) -> list[Curve]:
-    return [curve for foot in feet for curve in stable_manifold(results.scene.osc, results.states, foot)]
+    return [curve for foot in feet for curve in stable_manifold(results.scene.seen, results.states, foot)]
 
 
 def _leaves(results: Results) -> list[Curve]:
@@ -144,13 +138,17 @@ def _leaves(results: Results) -> list[Curve]:
     low, high = results.scene.tau
     count = results.scene.leaves
     feet = low + (np.arange(count) + 0.5) * (high - low) / count
-    pressed = feet[acceleration(results.scene.osc, feet) < 0]
+    pressed = feet[acceleration(results.scene.seen, feet) < 0]
     return _manifolds(results, map(repr, pressed.tolist()))
 
 
 def _orbits(results: Results) -> list[Curve]:
-    flown = [orbit(results.scene.osc, tau, v, results.scene.impacts) for tau, v in results.scene.orbits]
+    flown = [orbit(results.scene.seen, tau, v, results.scene.impacts) for tau, v in results.scene.orbits]
     made = [np.stack([np.asarray(each.tau), np.asarray(each.v)], axis=1) for each in flown]
+    made = [
+        points if each.wall is None else points[each.wall == Wall.lower]
+        for points, each in zip(made, flown, strict=True)
+    ]
     return [Curve("orbit", points, STATES) for points in made]
 
 
@@ -160,6 +158,8 @@ NEEDS: dict[str, tuple[Callable[[Results], list[Curve]], tuple[str, ...]]] = {
     "horizon": (_of_surface("horizon"), ("lines",)),
     "visible": (_visible, ("lines",)),
     "shadow": (_of_surface("shadow"), ("lines", "visible")),
+    "beyond": (lambda results: results.surface.beyond, ()),
+    "cut": (lambda results: results.surface.cut, ()),
     "outline": (_of_surface("outline"), ("lines",)),
     "discontinuities": (_of_surface("discontinuities"), ("lines", "visible")),
     "gamma": (_gamma, ()),

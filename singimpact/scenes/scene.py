@@ -5,7 +5,7 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -49,6 +49,12 @@ def _strokes(pen: str) -> Drawer:
     return draw
 
 
+def _jumps(axes: object, curves: list[Curve], label: str) -> None:
+    """The discontinuities on P, and the launches that graze a second wall."""
+    _strokes("jump")(axes, [curve for curve in curves if curve.name != "cut"], label)
+    _strokes("cut")(axes, [curve for curve in curves if curve.name == "cut"], PENS["cut"].words)
+
+
 def _first_hits(pen: str) -> Drawer:
     """The stretches that are first hits."""
 
@@ -70,8 +76,10 @@ LAYERS: dict[str, Layer] = {
     "zero-set": Layer("zero-set", SURFACE, PENS["Z"].words, _strokes("Z")),
     "visible": Layer("visible", SURFACE, "visible part of $H$", _first_hits("H")),
     "shadow": Layer("shadow", SURFACE, PENS["shadow"].words, _strokes("shadow")),
+    "cut": Layer("cut", SURFACE, PENS["cut"].words, _strokes("cut")),
+    "beyond": Layer("beyond", SURFACE, PENS["beyond"].words, _strokes("beyond")),
     "outline": Layer("outline", STATES, PENS["P"].words, _strokes("P")),
-    "discontinuities": Layer("discontinuities", STATES, PENS["jump"].words, _strokes("jump")),
+    "discontinuities": Layer("discontinuities", STATES, PENS["jump"].words, _jumps),
     "gamma": Layer("gamma", STATES, PENS["gamma"].words, _strokes("gamma")),
     "stable-manifolds": Layer("stable-manifolds", STATES, r"$W^s_\tau$", _strokes("loop")),
     "foliation": Layer("foliation", STATES, PENS["manifold"].words, _strokes("manifold")),
@@ -79,19 +87,21 @@ LAYERS: dict[str, Layer] = {
 }
 
 
-@checked_methods
+@partial(checked_methods, two_walls=True)
 @dataclass(frozen=True)
 class Scene:
     """A picture, before it is drawn.
 
     Parameters
     ----------
-    osc : the oscillator. layers : their names, all in one plane: horizon, zero-set, visible, shadow in (tau, t);
+    osc : the oscillator. layers : their names, all in one plane: horizon, zero-set, visible, shadow in (tau, t), and
+        of a model with two walls cut and beyond, the parts of H and Z whose flights meet the other wall;
         outline, discontinuities, gamma, stable-manifolds, foliation, orbits in (tau, v).
     tau : ends of the window. t : of either sign; flights of this length are looked at. v : ends, the lower one 0.
     pixels : width of the picture; curves are computed as exactly as it can show.
     feet : times whose W^s_tau the layer stable-manifolds draws. leaves : of the layer foliation.
     orbits : states (tau, v) of the layer orbits, and how many impacts. marks : (letter, tau, t or v).
+    wall : of a model with two: the one whose V_c' and states are shown, "lower" (also without it) or "upper".
 
     Examples
     --------
@@ -112,12 +122,14 @@ class Scene:
     orbits: tuple[tuple[Any, Any], ...] = ()
     impacts: int = 50
     marks: tuple[tuple[str, float, float], ...] = ()
+    wall: object = None
     plane: tuple[str, str] = field(init=False, default=STATES)
     model = property(lambda self: self.osc)
 
     def __post_init__(self) -> None:
         if not isinstance(self.osc, Oscillator):
             raise refuse("osc", self.osc, "an ImpactOscillator")
+        self.osc.seen_from(self.wall)  # refused before the work
         if isinstance(self.layers, str) or not isinstance(self.layers, Iterable):
             raise refuse("layers", self.layers, "a list of names of layers")
         if (
@@ -194,6 +206,11 @@ class Scene:
         return cls(**fields)
 
     @property
+    def seen(self) -> Oscillator:
+        """The model whose lower wall is the one that is shown."""
+        return self.osc.seen_from(self.wall)
+
+    @property
     def times(self) -> tuple[float, float]:
         """The window of flight times."""
         wide = self.tau[1] - self.tau[0]
@@ -208,7 +225,7 @@ class Scene:
 
     def depends(self, need: str) -> tuple[Any, ...]:
         """The values that the curves of a need depend on; a cached result is used where all are equal."""
-        ground = (self.osc.to_dict(), self.tau, self.pixels)
+        ground = (self.seen.to_dict(), self.tau, self.pixels)
         more = {
             "gamma": (self.speeds,),
             "stable-manifolds": (self.speeds, list(map(str, self.feet))),
@@ -318,7 +335,7 @@ def checked_text(name: str, text: Any) -> str:
     return content
 
 
-FILE_KEYS = ("model", "layers", "tau", "t", "v", "pixels", "title", "feet", "leaves", "orbits", "impacts", "marks")
+FILE_KEYS = ("model", *(name for name in Scene.__dataclass_fields__ if name not in ("osc", "plane")))
 
 
 def _inside(points: Any, box: Any) -> bool:

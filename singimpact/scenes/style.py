@@ -108,6 +108,8 @@ PENS = {
     "jump": Pen(BLACK, width=2.8, words="discontinuities of $G$: visible part of $P$"),
     "rest": Pen(GREY, width=3.6, words=r"$\Pi_0$: velocity $v = 0$"),
     "shadow": Pen(GREEN, DOTS, 3.4, "shadow of $H$"),
+    "cut": Pen(ORANGE, DASH_DOT, 2.2, "cut: the flight grazes the other wall"),
+    "beyond": Pen(GREY, DOTS, 1.0, "beyond the cut: the flight meets the other wall"),
     "gamma": Pen(PURPLE, width=2.8, words=r"$\gamma$: threshold of complete chatter"),
     "manifold": Pen(SKY, width=1.0, words=r"stable manifolds $W^s_\tau$"),
     "loop": Pen(BLUE, DASH_DOT, 1.6, "one stable manifold"),

@@ -60,7 +60,8 @@ class FoldLine(Result):
 
     Attributes
     ----------
-    maps : "p" or "phi". start, end : (tau, t). bounds : what stands there: "cusp", "edge"; "closed" when it is round.
+    maps : "p" or "phi". start, end : (tau, t). bounds : what stands there: "cusp", "edge"; "cut" where the flights
+        beyond meet a second wall; "closed" when it is round.
     """
 
     maps: str
@@ -132,7 +133,9 @@ def classify(model: Oscillator, tau: Any = None, t: Any = None, between: Any = N
     folds = [
         line for maps, curves in (("p", surface.horizon), ("phi", surface.zero_set)) for line in _folds(maps, curves)
     ]
-    swans, notes = _swans(model, between)
+    swans, notes = _swans(model if model.upper is None else model.one_wall(), between)
+    if left_out := surface.divided[1]:
+        notes += (f"of H and of Z {len(left_out)} parts are left out, whose flights meet the other wall",)
     if singular:
         notes += (f"V_c' is singular at {len(singular)} flights from rest to rest: curves are cut there",)
     return Classification(
@@ -191,13 +194,14 @@ def _folds(maps: str, curves: list[Curve]) -> Iterator[FoldLine]:
     """Each curve cut at its cusps."""
     for curve in curves:
         cuts = sorted(mark.index for mark in curve.marks if mark.name == "cusp")
+        edges = {mark.index: "cut" for mark in curve.marks if mark.name == "cut"}
         if curve.closed:
             pairs = list(zip(cuts, cuts[1:] + cuts[:1], strict=True)) or [(0, len(curve) - 1)]
         else:
             ends = [0, *cuts, len(curve) - 1]
             pairs = list(pairwise(ends))
         for pair in pairs:
-            kinds = ["cusp" if i in cuts else "closed" if curve.closed else "edge" for i in pair]
+            kinds = ["cusp" if i in cuts else "closed" if curve.closed else edges.get(i, "edge") for i in pair]
             start, end = ((float(curve.points[i, 0]), float(curve.points[i, 1])) for i in pair)
             yield FoldLine(maps, start, end, (kinds[0], kinds[1]))
 

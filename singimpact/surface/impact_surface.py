@@ -10,8 +10,10 @@ cusp       (tau_*, t), t != 0: a cusp of phi; its mirror image on H is a cusp of
 rest       x' = 0 at t != 0: P crosses Pi_0, and Z meets the mirror image of itself
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Any
 
@@ -22,10 +24,10 @@ from singimpact.contact.points import TangencyPoint, tangency_points
 from singimpact.flights.impact_map import first_hit
 from singimpact.flights.inverse_map import backwards
 from singimpact.flights.model_numbers import fastest_rate
-from singimpact.inputs import checked_keywords, refuse
+from singimpact.inputs import checked_keywords, refuse, takes_two_walls
 from singimpact.oscillator.model import Oscillator
-from singimpact.status import Status
 from singimpact.surface.curve import RESOLUTION, STATES, SURFACE, Curve, Mark, Window
+from singimpact.surface.other_wall import TO_LAND, TO_LAUNCH, OtherWall, at_lower_wall
 from singimpact.surface.rest_flights import RestFlights
 from singimpact.surface.tracing import Polyline, traced
 
@@ -44,6 +46,32 @@ class NamedLine:
     closed: bool
     tolerance: float
     marks: tuple[Mark, ...]
+
+    @classmethod
+    def of(cls, curve: Curve) -> NamedLine:
+        """The line in a curve with three columns, see `curve`."""
+        return cls(curve.points[:, :2], curve.points[:, 2], curve.closed, curve.tolerance, curve.marks)
+
+    @property
+    def curve(self) -> Curve:
+        """The line as a curve with the column x' beside tau and t."""
+        points = np.column_stack([self.points, self.column])
+        return Curve("lines", points, SURFACE, self.marks, self.closed, self.tolerance)
+
+    def parts(self, chosen: Array) -> list[NamedLine]:
+        """The parts of consecutive chosen vertices, their new ends marked "cut"."""
+        whole, last = self.curve, len(self.points) - 1
+        if self.closed and not chosen.all():  # begins where it is not chosen
+            first = int(np.argmin(chosen))
+            turned = (np.arange(last + 1) + first) % last
+            marks = tuple(Mark((mark.index - first) % last, mark.name) for mark in self.marks)
+            whole, chosen = replace(whole, points=whole.points[turned], marks=marks, closed=False), chosen[turned]
+        pieces = [piece for piece in whole.parts(chosen) if len(piece) > 1]
+        for at, piece in enumerate(pieces):
+            new = {0, len(piece) - 1} - {mark.index for mark in piece.marks}
+            if not piece.closed:
+                pieces[at] = replace(piece, marks=(*piece.marks, *(Mark(end, "cut") for end in new)))
+        return [NamedLine.of(piece) for piece in pieces]
 
 
 @dataclass(frozen=True)
@@ -187,6 +215,7 @@ class Cusp:
         return self.tau + self.t, self.velocity
 
 
+NOWHERE = np.zeros(0, dtype=bool)
 CELLS_A_RADIAN = 6  # of the sketch, of the fastest rate that the model shows
 SAME = 1e-6  # a vertex is the first hit when that comes at its time: two crossings nearer than this are one
 
@@ -198,10 +227,15 @@ class ImpactSurface:
     ----------
     osc : the oscillator. tau, t : ends of the window; t of either sign, or a polynomial's zeros are cut off.
     resolution : a share of the window's longer side; chords of the curves stay within half of it.
+    wall : of a model with two: the one that the surface is of, "lower" (also without it) or "upper".
 
     Attributes
     ----------
-    window : as read. flights : computed so far.
+    window : as read. flights : computed so far. model : whose lower wall is this one, with x -> -x at an upper wall.
+
+    Notes
+    -----
+    A flight that meets the other wall leaves V_c': all curves end at the `cut`, to within one chord.
 
     Examples
     --------
@@ -211,11 +245,15 @@ class ImpactSurface:
     """
 
     @checked_keywords
-    def __init__(self, osc: Oscillator, tau: Any, t: Any, resolution: Any = RESOLUTION.usual) -> None:
+    @takes_two_walls
+    def __init__(
+        self, osc: Oscillator, tau: Any, t: Any, resolution: Any = RESOLUTION.usual, *, wall: object = None
+    ) -> None:
         if not isinstance(osc, Oscillator):
             raise refuse("osc", osc, "an ImpactOscillator")
-        self.model, self.window = osc, Window.read(tau, t, resolution)
-        self._rest = RestFlights(osc)
+        self.model, self.window = osc.seen_from(wall), Window.read(tau, t, resolution)
+        self._rest = RestFlights(self.model)
+        self._other = None if osc.upper is None else OtherWall(self.model)
 
     def __repr__(self) -> str:
         (a, b), (c, d) = self.window.x, self.window.y
@@ -252,10 +290,27 @@ class ImpactSurface:
     @cached_property
     def lines(self) -> list[NamedLine]:
         """Z with its named points and x' at the other end; H and P follow from it by symmetry."""
-        cell = 1 / (CELLS_A_RADIAN * fastest_rate(self.model))
-        made = traced(self._rest.grid, self._rest.y_and_gradient, self.window, cell, self._speed)
+        return self.divided[0]
+
+    @cached_property
+    def divided(self) -> tuple[list[NamedLine], list[NamedLine]]:
+        """`lines`, and those parts of Z whose flights meet the other wall."""
+        plain = traced(self._rest.grid, self._rest.y_and_gradient, self.window, self._cell, self._speed)
         zeros = [tau for _, tau in self.placed_tangencies]
-        return [named(line, zeros, self._rest) for line in made]
+        lines = [named(line, zeros, self._rest) for line in plain]
+        if self._other is None:
+            return lines, []
+        met = [self._other.is_met(*line.points.T) for line in lines]
+        inside, outside = (
+            [piece for line, chosen in zip(lines, sides, strict=True) for piece in line.parts(chosen)]
+            for sides in ([~chosen for chosen in met], met)
+        )
+        return inside, outside
+
+    @property
+    def _cell(self) -> float:
+        """The largest cell of a sketch."""
+        return 1 / (CELLS_A_RADIAN * fastest_rate(self.model))
 
     @cached_property
     def _speed(self) -> float:
@@ -271,9 +326,7 @@ class ImpactSurface:
     @cached_property
     def horizon(self) -> list[Curve]:
         """H = iota(Z): (tau, t) where the flight lands with velocity 0; `visible` where it does so first."""
-        involved = [np.stack([line.points.sum(axis=1), -line.points[:, 1]], axis=1) for line in self.lines]
-        pairs = zip(self.lines, involved, strict=True)
-        return [_curve("H", points, SURFACE, line, partial(self._first_back, line)) for line, points in pairs]
+        return [_curve("H", _involved(line), SURFACE, line, partial(self._first_back, line)) for line in self.lines]
 
     @cached_property
     def outline(self) -> list[Curve]:
@@ -285,9 +338,25 @@ class ImpactSurface:
         ]
 
     @cached_property
+    def beyond(self) -> list[Curve]:
+        """The parts of Z and H that a second wall takes away: their flights meet it."""
+        lines = [replace(line, marks=()) for line in self.divided[1]]
+        return [_curve("beyond", points, SURFACE, line) for line in lines for points in (line.points, _involved(line))]
+
+    @cached_property
+    def cut(self) -> list[Curve]:
+        """The edge of V_c' at a second wall: (tau, t) of flights from impact to impact that graze it on their way."""
+        return self._cut(TO_LAND, SURFACE)
+
+    def _cut(self, columns: tuple[int, int], axes: tuple[str, str]) -> list[Curve]:
+        pieces = [] if self._other is None else self._other.cut(self.window, columns, self._cell)
+        return [Curve("cut", piece, axes, first_hits=np.ones(len(piece), dtype=bool)) for piece in pieces]
+
+    @cached_property
     def discontinuities(self) -> list[Curve]:
-        """The discontinuities of G: the visible part of P."""
-        return [part for curve in self.outline for part in curve.parts(_to_the_end(curve)) if len(part) > 1]
+        """The discontinuities of G: the visible part of P, and the launches that graze a second wall, named "cut"."""
+        visible = [part for curve in self.outline for part in curve.parts(_to_the_end(curve)) if len(part) > 1]
+        return visible + self._cut(TO_LAUNCH, STATES)
 
     @cached_property
     def cusps(self) -> list[Cusp]:
@@ -320,17 +389,23 @@ class ImpactSurface:
         tau, t = line.points.T
         return _is_first(self._hits(backwards(self.model), -tau, t < 0), -t)
 
-    def _hits(self, model: Oscillator, tau: Array, asked: Array) -> Array:
+    def _hits(self, model: Oscillator, tau: Array, wanted: Array) -> Array:
         """The times of first hits from rest; nan where there is none or it is not requested."""
-        self._rest.flown += int(asked.sum())
-        found = np.full(len(tau), np.nan)
-        hit = first_hit(model, tau[asked], np.zeros(int(asked.sum())))
-        kept = np.isin(hit.status, (Status.hit, Status.graze))
-        found[asked] = np.where(kept, hit.flight_time, np.nan)
-        return found
+        self._rest.flown += int(wanted.sum())
+        times = np.full(len(tau), np.nan)
+        hit = first_hit(model, tau[wanted], np.zeros(int(wanted.sum())))
+        times[wanted] = np.where(at_lower_wall(hit), hit.flight_time, np.nan)
+        return times
 
 
-def _curve(name: str, points: Array, axes: tuple[str, str], line: NamedLine, first: Callable[[], Array]) -> Curve:
+def _involved(line: NamedLine) -> Array:
+    """The vertices of H that belong to those of Z."""
+    return np.stack([line.points.sum(axis=1), -line.points[:, 1]], axis=1)
+
+
+def _curve(
+    name: str, points: Array, axes: tuple[str, str], line: NamedLine, first: Callable[[], Array] | Array = NOWHERE
+) -> Curve:
     return Curve(name, points, axes, line.marks, line.closed, line.tolerance, first)
 
 
@@ -345,6 +420,6 @@ def _to_the_end(curve: Curve) -> Array:
     chosen = curve.visible.copy()
     for mark in curve.marks:
         beside = [mark.index - 1, mark.index + 1]
-        if mark.name != "end" and any(0 <= i < len(curve) and curve.visible[i] for i in beside):
+        if mark.name not in ("end", "cut") and any(0 <= i < len(curve) and curve.visible[i] for i in beside):
             chosen[mark.index] = True
     return chosen

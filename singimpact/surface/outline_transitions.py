@@ -12,7 +12,7 @@ P and Pi_0 together are the preimage of one curve of flights, those at rest at t
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -25,7 +25,7 @@ from singimpact.algebra.rings import DOUBLES
 from singimpact.contact.points import tangency_points
 from singimpact.inputs import refuse
 from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.moving_number import RESTITUTION, with_number
+from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION, UPPER, with_number
 from singimpact.result import Results
 from singimpact.surface.curve import window_ends
 from singimpact.surface.followed_rests import FollowedRests, doubts_of_rests, gaps_of, met_rests
@@ -104,6 +104,7 @@ def transitions(model: Oscillator, over: str, between: Any, t: Any = (-6, 6), ki
     ----------
     over : clearance, a parameter; "amplitude" and "damping" of any model, "stiffness" and "phase" of `si.linear`, need
         not be parameters of it. No flight depends on the "restitution": P scales with it, and there are no transitions.
+        A second wall is no part of P: events whose flights meet it are not visible.
     between : its two ends. t : window of flight times; of flights with two rests or more the time from the first to the
         last one or its negative lies in it, so that wider windows have more of them.
     kinds : some of `KINDS`; all without it.
@@ -136,10 +137,14 @@ def transitions(model: Oscillator, over: str, between: Any, t: Any = (-6, 6), ki
     """
     model = with_number(model, over)
     ends, times, wanted = window_ends(over, between), window_ends("t", t), _kinds(kinds)
-    if over == RESTITUTION:
+    if over in (RESTITUTION, UPPER[1]):
         return Transitions()
     values = np.linspace(*ends, STEPS + 1)
-    family = Family(model, over)
+    family = whole = Family(model, over)
+    if model.upper is not None:
+        family = Family(model.one_wall(), over)
+        for end in ends:  # refused where the wall is moved beyond the other one
+            whole.at(end)
     swans, notes = swans_met(family, values)
     events = [*swans, *(_swallowtails(family, swans, times) if "swallowtail" in wanted else ())]
     if "tangency" in wanted:
@@ -147,12 +152,46 @@ def transitions(model: Oscillator, over: str, between: Any, t: Any = (-6, 6), ki
     events += _with_more_rests(family, times, ends, wanted)
     kinds_met = ["tangency" if event.event.startswith("tangency") else event.event for event in events]
     visible_events = [
-        told(event, family.at(event.value)) for event, kind in zip(events, kinds_met, strict=True) if kind in wanted
+        told(event, whole.at(event.value)) for event, kind in zip(events, kinds_met, strict=True) if kind in wanted
     ]
     result = Transitions(sorted(visible_events, key=lambda event: (event.value, event.tau, event.t)))
     result.notes = notes if {"swan", "swallowtail"} & wanted else ()
     result._proof = partial(_doubts, family, ends, times, wanted, tuple(swans))
     return result
+
+
+def at_wall(
+    model: Oscillator, wall: object, over: str, between: object, t: object, kinds: object = None
+) -> Transitions:
+    """The transitions of P at a wall of a model, where "upper" is the place of an upper one; others as `transitions`.
+
+    Raises
+    ------
+    InputError : `over` is the place of the other wall, which moves no P.
+
+    Examples
+    --------
+    >>> pair = Oscillator("x", "cos(2*t)", -2, "1/2", upper=2)
+    >>> [(each.kind, each.value) for each in at_wall(pair, "upper", "upper", ("0.9", "1.1"), (-1, 1), "swan")]
+    [('swan, positive', 1.0)]
+    """
+    seen = model.seen_from(wall)
+    if model.upper is None:
+        return transitions(model, over, between, t, kinds)
+    own, other = (CLEARANCE, UPPER[0]) if seen is model else (UPPER[0], CLEARANCE)
+    if over == other:
+        raise refuse("over", over, f"{own!r}, the place of this wall, or another number: P does not depend on {other}")
+    if over != UPPER[0]:
+        return transitions(seen, over, between, t, kinds)
+    low, high = window_ends(over, between)
+    mirrored = transitions(seen, CLEARANCE, (-high, -low), t, kinds)
+    turned = Transitions(replace(event, value=-event.value) for event in reversed(mirrored))
+    turned.notes, turned._proof = mirrored.notes, partial(_doubts_of_mirrored, mirrored)
+    return turned
+
+
+def _doubts_of_mirrored(mirrored: Transitions, _: Transitions) -> tuple[str, ...]:
+    return mirrored.doubts[len(mirrored.notes) :]
 
 
 def _kinds(given: Any) -> frozenset[str]:

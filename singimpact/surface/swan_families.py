@@ -22,6 +22,7 @@ from singimpact.oscillator.wall_acceleration import acceleration as wall_acceler
 from singimpact.result import Result
 from singimpact.status import Status
 from singimpact.surface.curve import Curve, window_ends
+from singimpact.surface.other_wall import OtherWall
 
 STEPS = 60  # between the ends of a number that is sampled: rows of a picture of curves, places where others are met
 SLACK = 1e-12  # of a period: a zero at 0 is found with a tiny sign
@@ -248,6 +249,7 @@ WORDS = {
         "the motion without impact meets the wall: arcs delta accumulate on it, and cuts of gamma and of its loops too"
     ),
 }
+BEYOND = "no first hit changes between impacts with this wall: the flight meets the other one"
 HIDDEN = "no first hit changes: the flight meets the wall from below, or passes through it between its rests"
 UNDECIDED = "the flight touches the wall once more, so that it is not decided whether first hits change"
 
@@ -257,11 +259,15 @@ def told(event: Transition, model: Oscillator) -> Transition:
 
     Parameters
     ----------
-    event : with its rests. model : at the value of the transition.
+    event : with its rests. model : at the value of the transition; its upper wall, if it has one, takes away flights.
     """
     rests = _in_first_period(event.rests, model)
-    visible, launch = _seen(event, rests, model)
+    visible, launch = _seen(event, rests, model if model.upper is None else model.one_wall())
     words = UNDECIDED if visible is None else WORDS[_key(event)] if visible else HIDDEN
+    if visible and model.upper is not None:
+        ends = np.array([rests[-1], rests[0] if launch is None else launch[0]])
+        if OtherWall(model).is_met(np.full(2, rests[0]), ends - rests[0]).any():
+            visible, launch, words = False, None, BEYOND
     return replace(event, rests=rests, visible=visible, launch=launch, effect=words)
 
 

@@ -5,6 +5,7 @@ import json
 import pytest
 
 import singimpact as si
+from singimpact.status import Status
 
 WALLS = [
     "--omega",
@@ -44,6 +45,21 @@ def test_an_orbit_has_the_walls_of_its_impacts(singimpact, tmp_path):
 
 
 def test_commands_of_one_wall_say_so(singimpact):
-    refused = singimpact("threshold", *WALLS, "--tau", "1")
+    refused = singimpact("explore", *WALLS)
     assert refused.exit_code != 0
     assert "takes a model with one wall" in refused.output
+
+
+@pytest.mark.parametrize("wall", ["lower", "upper"])
+def test_the_theory_at_a_wall(singimpact, wall):
+    at = ["--wall", wall]
+    tau = "1.2" if wall == "lower" else "0.1"
+    told = json.loads(singimpact("threshold", *WALLS, "--tau", tau, *at, "--json").stdout)
+    found = PAIR.threshold(tau, wall=wall)
+    assert (float(told["v"]), told["status"]) == (float(found.v), Status(int(found.status)).name)
+    listed = json.loads(singimpact("classify", *WALLS, *at, "--json").stdout)
+    assert listed["points"] == json.loads(json.dumps(PAIR.classify(wall=wall).as_dict()["points"]))
+    ends = ("0", "0.4") if wall == "upper" else ("-0.4", "0")
+    over = ("--over", "upper" if wall == "upper" else "clearance", "--between", *ends)
+    moved = json.loads(singimpact("classify", *WALLS, *at, *over, "--json").stdout)["transitions"]["found"]
+    assert [each["value"] for each in moved] == [each.value for each in PAIR.transitions(over[1], ends, wall=wall)]

@@ -14,6 +14,8 @@ ALONE = {
     "horizon": {"lines", "horizon"},
     "zero-set": {"lines", "zero-set"},
     "visible": {"lines", "visible"},
+    "beyond": {"beyond"},
+    "cut": {"cut"},
     "outline": {"lines", "outline"},
     "discontinuities": {"lines", "visible", "discontinuities"},
     "gamma": {"gamma"},
@@ -173,3 +175,23 @@ def test_refused_files(tmp_path, text, told):
     (tmp_path / "scene.toml").write_text(text)
     with pytest.raises(InputError, match=told):
         Scene.read(tmp_path / "scene.toml")
+
+
+def test_a_scene_of_a_wall_shows_the_cut_and_leaves_out_what_lies_beyond_it(tmp_path):
+    file = tmp_path / "pair.toml"
+    file.write_text(
+        'wall = "upper"\nlayers = ["horizon", "zero-set", "visible", "beyond", "cut"]\ntau = [-0.5, 4]\nt = [-4, 4]\n'
+        '[model]\nf = "x + 0.1*xdot + 0.3*x**3"\ng = "cos(1.7*t)"\nclearance = "-0.3"\nrestitution = "0.6"\n'
+        'upper = "0.4"\n'
+    )
+    made = Scene.read(file)
+    labels = [text.get_text() for text in made.draw().get_legend().get_texts()]
+    assert {"cut: the flight grazes the other wall", "beyond the cut: the flight meets the other wall"} <= set(labels)
+    states = Scene(made.osc, ("discontinuities", "orbits"), (-0.5, 4), v=(0, 1), orbits=((0.5, 0.3),), wall="upper")
+    labels = [text.get_text() for text in states.draw().get_legend().get_texts()]
+    assert "cut: the flight grazes the other wall" in labels
+    flown = si.ImpactOscillator(**made.osc.to_dict()).orbit(0.5, 0.3, 50, wall="upper")
+    (shown,) = states.results.get("orbits")
+    assert len(shown) == np.count_nonzero(flown.wall == 1) < len(flown.wall)
+    with pytest.raises(InputError, match="wall"):
+        scene("cut", wall="upper")
