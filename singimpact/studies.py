@@ -89,6 +89,7 @@ def interval(between: Any) -> tuple[Fraction, Fraction]:
 
 
 @checked_keywords
+@takes_two_walls
 def basins(
     osc: Oscillator,
     window: Any = None,
@@ -97,6 +98,7 @@ def basins(
     impacts: int = 20_000,
     executor: Any = None,
     output: Any = None,
+    wall: Any = None,
 ) -> Basins:
     """Basins of attraction: the attractor of each state of a grid: an orbit or cycle, repeated chatter, rest, chaos.
 
@@ -108,12 +110,14 @@ def basins(
         to c + 2 max(1, |c|), and (-2, 2).
     size : states on a side, from 2 to 10000. impacts : at most, of an orbit that does not settle; its class then says
         so. executor, output : as for `sweep`; a case is some rows of the grid.
-        The default executor is one thread for each core.
+        The default executor is one thread for each core. wall : of the states of a model with two walls: "lower" (also
+        without it) or "upper".
 
     Returns
     -------
     Basins : `.codes`, shape (size, size), numbers of the classes in `.attractors`; `.classes` has their names and
-        shares, `.first_chatter_completes` is an array of bool. `si.plot` draws it, `.to_csv(file)` writes it.
+        shares, `.first_chatter_completes` is an array of bool. `si.plot` draws it, `.to_csv(file)` writes it. Between
+        two walls an orbit has their word, such as (lu, 1), and its v is < 0 at the upper one.
 
     Raises
     ------
@@ -133,7 +137,7 @@ def basins(
     starts = isinstance(osc, Oscillator) and osc.autonomous
     names = "((x_low, x_high), (xdot_low, xdot_high))" if starts else "((tau_low, tau_high), (v_low, v_high))"
     tau, v = (None, None) if window is None else _two_ends(window, names)
-    return basins(osc, tau, v, size, executor, output, impacts)
+    return basins(osc, tau, v, size, executor, output, impacts, wall)
 
 
 @checked_keywords

@@ -9,14 +9,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
 from math import log2, pi
-from typing import Any
+from typing import Any, NamedTuple
 
 import flint
 import numpy as np
 
 from singimpact.algebra.numbers import EPSILON, Array
 from singimpact.algebra.precision import balls_at
-from singimpact.bench.truth.first_hit import Cubic, Linear, first_hit
+from singimpact.bench.truth.first_hit import Above, Cubic, Linear, first_hit, first_of_both
 from singimpact.cases import sweep
 from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.status import Status
@@ -46,17 +46,64 @@ class Draw:
 
 DRAW = Draw()
 REGIMES = ("generic", "low", "graze", "long")
+WALL_REGIMES = (*REGIMES, "narrow", "wide")
+BETWEEN_WALLS_FROM = 10**9
+"""The number of the first case between two walls."""
 COLUMNS = ("status", "time_error", "velocity_error", "wrong", "tau", "v", "depth", "bound")
 
 
-def check(count: int, seed: int, executor: Any = None, output: Any = None) -> list[Row]:
+class Model(NamedTuple):
+    """An oscillator of a family between its walls, and the wall of the launches; with one wall `upper` is None."""
+
+    family: str
+    omega: float
+    clearance: float
+    upper: float | None = None
+    wall: int = 0
+
+    @property
+    def gap(self) -> Any:
+        """The distance of both walls, a ball."""
+        return flint.arb(self.upper) - flint.arb(self.clearance)
+
+    @property
+    def horizon(self) -> float:
+        """Of its flights."""
+        return 2000 * pi / self.omega if self.family == "linear" and self.upper is None else DRAW.horizon
+
+    def oscillator(self) -> ImpactOscillator:
+        """The model as a user writes it."""
+        law = None if self.upper is None else "0.7"
+        if self.family == "linear":
+            return linear(self.omega, self.clearance, "0.8", upper=law and (self.upper, law))
+        force, walls = "x + xdot/10 + 3*x**3/10", {"upper": self.upper, "upper_restitution": law}
+        return ImpactOscillator(force, "cos(omega*t)", self.clearance, "0.8", {"omega": self.omega}, **walls)
+
+    def motion(self, tau: Any, v: Any) -> Any:
+        """The flight from the wall of the launches, up from there."""
+        place, push = (-self.upper, -1) if self.wall and self.upper is not None else (self.clearance, 1)
+        made = Linear if self.family == "linear" else Cubic
+        return made(self.omega, place, tau, v, push=push)
+
+    def back_from_touch(self, tau: float) -> Any:
+        """The flight backwards from a touch of the wall at tau, or of the other wall where there is one."""
+        touched = self if self.upper is None else self._replace(wall=1 - self.wall)
+        if self.family == "linear":
+            return touched.motion(-tau, 0.0)
+        place = touched.motion(0.0, 0.0)
+        return Cubic(self.omega, float(place.c), -tau, 0.0, -1, place.push)
+
+
+def check(count: int, seed: int, executor: Any = None, output: Any = None, between_walls: bool = False) -> list[Row]:
     """Fly `count` states, rounded up to whole cases; a row a kind of state.
 
     Parameters
     ----------
     executor, output : as in `singimpact.cases.sweep`; an interrupted check goes on.
+    between_walls : of models with two walls.
     """
-    numbers = range(-(-count // DRAW.each))
+    first = BETWEEN_WALLS_FROM if between_walls else 0
+    numbers = range(first, first - (-count // DRAW.each))
     table = sweep(partial(case, seed), numbers, executor, output)
     kinds = [kind_of(number) for number in numbers]
     return [_row(kind, table, kinds) for kind in dict.fromkeys(kinds)]
@@ -66,85 +113,112 @@ def kind_of(number: int) -> str:
     """Family and regime of a case."""
     family = "cubic" if number % DRAW.cubic == 0 else "linear"
     turn = number // DRAW.cubic if family == "cubic" else number
-    return f"{family} {REGIMES[turn % len(REGIMES)]}"
+    regimes, place = (WALL_REGIMES, " between walls") if number >= BETWEEN_WALLS_FROM else (REGIMES, "")
+    return f"{family} {regimes[turn % len(regimes)]}{place}"
 
 
 def case(seed: int, number: int) -> Array:
     """An array (states, COLUMNS); errors in units of what is allowed."""
-    family, regime = kind_of(number).split()
+    family, regime = kind_of(number).split()[:2]
     rng = np.random.default_rng([seed, number])
-    omega, clearance, states = _drawn(rng, family, regime)
+    drawn = _drawn_between if number >= BETWEEN_WALLS_FROM else _drawn
+    model, states = drawn(rng, family, regime)
     tau, v = np.array(states).T
-    if family == "linear":
-        osc = linear(omega, clearance, "0.8")
-    else:
-        osc = ImpactOscillator("x + xdot/10 + 3*x**3/10", "cos(omega*t)", clearance, "0.8", {"omega": omega})
-    step = osc.impact_map(tau, v, horizon=_horizon(family, omega))
+    wall = None if model.upper is None else model.wall
+    osc: Any = model.oscillator()
+    step = osc.impact_map(tau, v, horizon=model.horizon, wall=wall)
+    walls = np.zeros(len(states)) if step.wall is None else step.wall
     rows = []
     for index, (start, speed) in enumerate(states):
-        one = [
-            float(np.ravel(field)[index]) for field in (step.status, step.flight_time, step.v, step.depth, step.bound)
-        ]
-        rows.append([one[0], *_errors(family, omega, clearance, start, speed, one), start, speed, *one[3:]])
+        fields = (step.status, step.flight_time, step.v, walls, step.depth, step.bound)
+        one = [float(np.ravel(field)[index]) for field in fields]
+        rows.append([one[0], *_errors(model, start, speed, one), start, speed, *one[4:]])
     return np.array(rows)
 
 
-def _horizon(family: str, omega: float) -> float:
-    return 2000 * pi / omega if family == "linear" else DRAW.horizon
-
-
-def _motion(family: str, omega: float, clearance: float, tau: float, v: float, sign: int = 1) -> Any:
-    return Linear(omega, clearance, tau, v) if family == "linear" else Cubic(omega, clearance, tau, v, sign)
-
-
-def _drawn(rng: Any, family: str, regime: str) -> tuple[float, float, list[tuple[float, float]]]:
-    """omega, clearance, and states (tau, v)."""
+def _drawn(rng: np.random.Generator, family: str, regime: str) -> tuple[Model, list[tuple[float, float]]]:
+    """A model with one wall, and states (tau, v)."""
     if regime == "long":
         near = [1.0, 1 + 1e-12, 1 - 1e-12, 1 + 10 ** rng.uniform(-9, -1.3), 1 - 10 ** rng.uniform(-9, -1.3)]
         omega = float(rng.choice(near))
         clearance = float(-rng.uniform(3, 60) if family == "linear" else -rng.uniform(0.7, 1.6))
     else:
         omega, clearance = float(rng.uniform(0.3, 3.5)), float(rng.uniform(-0.9, 0.9))
-    states: list[tuple[float, float]] = []
+    model, states = Model(family, omega, clearance), list[tuple[float, float]]()
     for _ in range(DRAW.tries * DRAW.each):
         tau, v = float(rng.uniform(-1, 1) * 2 * pi / omega), float(rng.uniform(0.01, 3))
         if regime == "low":
             v = float(10 ** rng.uniform(-12, -3) if rng.random() < 0.9 else 10 ** rng.uniform(-300, -12))
-        states += _grazing(rng, family, omega, clearance, tau) if regime == "graze" else [(tau, v)]
+        states += _grazing(rng, model, tau) if regime == "graze" else [(tau, v)]
         if len(states) == DRAW.each:
-            return omega, clearance, states
+            return model, states
     return _drawn(rng, family, regime)  # few flights of that model touch: another one
 
 
-def _grazing(rng: Any, family: str, omega: float, clearance: float, tau: float) -> Iterator[tuple[float, float]]:
+def _drawn_between(rng: np.random.Generator, family: str, regime: str) -> tuple[Model, list[tuple[float, float]]]:
+    """A model with two walls, and states (tau, v) at one of them."""
+    omega, clearance = float(rng.uniform(0.3, 3.5)), float(rng.uniform(-0.9, 0.9))
+    sizes = {"low": (-12, 0.5), "narrow": (-12, -1), "wide": (0, 6 if family == "linear" else 1.5)}
+    gap = 10 ** rng.uniform(*sizes.get(regime, (-1.3, 0.5)))
+    if regime == "long":  # inside the walls for many turns, at a resonance
+        omega = float(1 + rng.choice([0, 1, -1]) * 10 ** rng.uniform(-9, -1.3))
+        clearance, gap = (-10, 30) if family == "linear" else (-1, 3)
+    elif regime == "graze" and rng.random() < 0.5:
+        gap = 10 ** rng.uniform(-9, 0)
+    model = Model(family, omega, float(clearance), float(clearance + gap), int(rng.integers(2)))
+    states: list[tuple[float, float]] = []
+    for _ in range(DRAW.tries * DRAW.each):
+        tau, v = float(rng.uniform(-1, 1) * 2 * pi / omega), float(rng.uniform(0.01, 3))
+        if regime == "low":
+            v = float(10 ** rng.uniform(-150, -3))
+        elif regime == "narrow":  # as fast as what reaches the other wall, or a tenth or ten times that
+            v = float((2 * gap) ** 0.5 * 10 ** rng.uniform(-1, 1))
+        elif regime == "wide":
+            v *= gap
+        states += _grazing(rng, model, tau) if regime == "graze" else [(tau, v)]
+        if len(states) == DRAW.each:
+            return model, states
+    return _drawn_between(rng, family, regime)
+
+
+def _grazing(rng: np.random.Generator, model: Model, tau: float) -> Iterator[tuple[float, float]]:
     """A state that a flight run backwards from a touch at tau started from, moved off it by 1e-10 to 1e-4."""
     with balls_at(DRAW.bits):
-        motion = _motion(family, omega, clearance, -tau, 0.0, -1)
+        motion = model.back_from_touch(tau)
         if not motion.at(0)[2] > 1e-3:
             return
-        found = first_hit(motion, 0.0, 60.0)
+        found = first_hit(motion if model.upper is None else Above(motion, model.gap), 0.0, 60.0)
     if found is not None:
         v = -float(found[1]) * (1 + float(rng.choice([-1, 1])) * 10 ** rng.uniform(-10, -4))
         yield tau - float(found[0]), v
 
 
-def _errors(
-    family: str, omega: float, clearance: float, tau: float, v: float, errors: list[float]
-) -> tuple[float, float, float]:
-    """Errors of flight time and velocity in units of max(1e-14, 10 kappa eps), max(1e-13, 10 kappa eps); 1 if wrong."""
-    status, time, next_v = errors[:3]
-    period = 2 * pi / omega
+def _errors(model: Model, tau: float, v: float, step: list[float]) -> tuple[float, float, float]:
+    """Errors of flight time and velocity in units of max(1e-14, 10 kappa eps), max(1e-13, 10 kappa eps); 1 if wrong.
+
+    Parameters
+    ----------
+    step : status, flight time, v and wall of the impact that the package has.
+    """
+    status, time, next_v, wall = step[:4]
+    period = 2 * pi / model.omega
     with balls_at(DRAW.bits + int(4 * max(-log2(v), 0))):
-        motion = _motion(family, omega, clearance, tau, v)
-        truth = first_hit(motion, v, _horizon(family, omega))
+        motion = model.motion(tau, v)
+        if model.upper is None:
+            truth = first_hit(motion, v, model.horizon)
+        else:
+            truth = first_of_both(motion, v, model.horizon, model.gap)
         if truth is None:
             return 0.0, 0.0, float(status not in (Status.no_return, Status.escaped, Status.unresolved))
         if status != Status.hit:
             return 0.0, 0.0, float(status != Status.unresolved)
-        off = float(abs(flint.arb(time) / truth[0] - 1)), float(abs(flint.arb(next_v) / (-truth[1] * 4 / 5) - 1))
+        true_wall = model.wall ^ bool(truth[1] > 0)
+        rebound = flint.arb(7 if true_wall else 8) / 10
+        off = float(abs(flint.arb(time) / truth[0] - 1)), float(abs(flint.arb(next_v) / (abs(truth[1]) * rebound) - 1))
         kappa = _conditions(motion, truth, (abs(tau - period * round(tau / period)), v))
     allowed = [max(least, 10 * k * EPSILON) for least, k in zip((1e-14, 1e-13), kappa, strict=True)]
-    return off[0] / allowed[0], off[1] / allowed[1], float(off[0] > DRAW.wrong and off[0] > 100 * allowed[0])
+    elsewhere = wall != true_wall or (off[0] > DRAW.wrong and off[0] > 100 * allowed[0])
+    return off[0] / allowed[0], off[1] / allowed[1], float(elsewhere)
 
 
 def _conditions(motion: Any, truth: tuple[Any, Any], state: tuple[float, float]) -> tuple[float, float]:

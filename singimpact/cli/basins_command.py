@@ -4,13 +4,14 @@ from typing import Any
 
 import click
 
-from singimpact.cli.model_options import model_options, take_model
+from singimpact.cli.model_options import model_options, take_model, wall_option
 from singimpact.cli.output import as_json_text, columns, picture_option, save, save_once, whole_option
 from singimpact.inputs import refuse
 
 
 @click.command()
 @model_options
+@wall_option
 @click.option("--tau", nargs=2, metavar="LOW HIGH", help="Window of launch phases.  [default: one period]")
 @click.option("--v", nargs=2, metavar="LOW HIGH", help="Window of velocities.  [default: 0 2]")
 @click.option("--x", nargs=2, metavar="LOW HIGH", help="Without t in f and g: window of x at the start.")
@@ -41,7 +42,7 @@ def command(
 
     An (n, k) orbit has n impacts in k periods of the forcing. A model without t has a grid of starts off the wall.
     """
-    keep = options.pop("keep")
+    keep, wall = options.pop("keep"), options.pop("wall")
     ends = {name: options.pop(name) for name in ("tau", "v", "x", "xdot")}
     model = take_model(options)
     axes = ("x", "xdot") if model.autonomous else ("tau", "v")
@@ -58,14 +59,14 @@ def command(
         from singimpact.scenes.basins_picture import draw_basins, draw_first_chatter
 
         with nullcontext() if workers is None else WorkerPool(workers) as pool:
-            result = basins(model, tau, v, size, pool, keep, impacts)
+            result = basins(model, tau, v, size, pool, keep, impacts, wall)
         draw = draw_basins if layer == "for-ever" else draw_first_chatter
         values = result.as_dict()
         first = float(values["first_chatter_completes"].mean())
         return draw(result).figure, {"classes": values["classes"], "first_chatter_completes": first}
 
     if keep is None:
-        summary = save_once(("basins", model, tau, v, size, impacts, layer), output, make)
+        summary = save_once(("basins", model, tau, v, size, impacts, layer, wall), output, make)
     else:
         figure, summary = make()
         save(figure, output)

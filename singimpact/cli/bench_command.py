@@ -218,10 +218,10 @@ if TYPE_CHECKING:
 @click.option("--keep", metavar="FILE.npz", help="Store results in this file, and resume from it.")
 @click.option(
     "--family",
-    type=click.Choice(["reference", "steep", "parametric"]),
+    type=click.Choice(["reference", "steep", "parametric", "between-walls"]),
     default="reference",
     show_default=True,
-    help="Of random states: linear and cubic, steep layers, or f with t.",
+    help="Of random states: linear and cubic, steep layers, f with t, or linear and cubic between two walls.",
 )
 @whole_option("--balls", 0, None, "Steep states flown in balls.", 1000)
 @whole_option("--digits-checks", 0, None, "States in balls that are also flown with digits=20.", 100)
@@ -255,7 +255,8 @@ def command(
     The group `states` compares random states with a slow solver of 60 digits; --states, --seed, --workers and
     --keep belong to it. With `--family steep` it compares 20 families of steep models with a solver of small fixed
     steps, with `--family parametric` four in whose f t occurs or that have no t at all, and --balls of the states with
-    ball arithmetic; --digit-pairs states are enclosed twice. The exit code is 1 if an impact is wrong.
+    ball arithmetic; --digit-pairs states are enclosed twice. `--family between-walls` has the solver of 60 digits for
+    models with two walls. The exit code is 1 if an impact is wrong.
     """
     from singimpact.bench.groups import GROUPS, usual
     from singimpact.bench.measuring import FULL, QUICK
@@ -274,13 +275,13 @@ def command(
     values = {"quick": quick, **_joined(tables)}
     texts = [_page(tables[0], output)] if form == "page" else [_text(table, form) for table in tables]
     wrong = _is_over(tables, store)
-    if "states" in chosen and family != "reference":
+    if "states" in chosen and family in ("steep", "parametric"):
         sizes, parametric = (balls, digits_checks, digit_pairs), family == "parametric"
         steep = steep_states(states, seed, workers, keep, sizes, parametric)
         values["states"], wrong = steep.data, wrong or steep.wrong
         texts.append(steep.text)
     elif "states" in chosen:
-        values["states"], text = _states(states, seed, workers, keep)
+        values["states"], text = _states(states, seed, workers, keep, family == "between-walls")
         wrong |= any(row["wrong"] for row in values["states"])
         texts.append(text)
     if directory is not None:
@@ -356,7 +357,9 @@ def _draw(found: list[Measured], place: Path) -> None:
         save(plotted(each), place / f"bench-{each.group}.png")
 
 
-def _states(states: int, seed: int, workers: int | None, keep: str | None) -> tuple[list[dict[str, Any]], str]:
+def _states(
+    states: int, seed: int, workers: int | None, keep: str | None, between_walls: bool
+) -> tuple[list[dict[str, Any]], str]:
     """Random states against the truth."""
     from dataclasses import asdict
 
@@ -364,7 +367,7 @@ def _states(states: int, seed: int, workers: int | None, keep: str | None) -> tu
     from singimpact.case_pools import WorkerPool
 
     with WorkerPool(workers) as pool:
-        rows = check(states, seed, pool, keep)
+        rows = check(states, seed, pool, keep, between_walls)
     header = ["states", "flown", "wrong", "unresolved", "flight time, worst", "v, worst"]
     cells = [
         [

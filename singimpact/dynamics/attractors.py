@@ -7,6 +7,8 @@ The periodic orbit beside a state that almost returns to itself is found by Newt
 An orbit that passes beside a fold returns to 1e-6 for thousands of turns although no periodic orbit is there, and next
 to a doubling a state comes nearer by turns of 2n impacts where n close the orbit. The distance of a return shows
 neither.
+
+States are (tau, x') just after impacts, x' < 0 at an upper wall.
 """
 
 from dataclasses import dataclass
@@ -17,7 +19,7 @@ import numpy as np
 from singimpact.algebra.numbers import Array
 from singimpact.dynamics.phases import Phases, phases_of
 from singimpact.flights.derivative import derivative
-from singimpact.flights.orbits import iterate
+from singimpact.flights.orbits import signed_iterate
 from singimpact.oscillator.model import Oscillator
 
 OTHER, CHATTER, CHAOS, GONE, AWAY, STUCK, SENSITIVE, CYCLE, STILL, LEVEL, RESPONSE, RESTING = range(12)
@@ -78,7 +80,7 @@ def _returns(model: Oscillator, tau: Array, v: Array, fast: float, most: int) ->
     for n in range(1, most + 1):
         if (codes != OTHER).all():
             break
-        ends = iterate(model, at, speed, 1)
+        ends = signed_iterate(model, at, speed, 1)
         flown += ends.tau - at
         at, speed, k = phases.of(ends.tau), ends.v, phases.periods(flown)
         near = apart((at, speed), (home, v), phases, fast) < SETTINGS.close
@@ -104,14 +106,15 @@ def within(attractor: Attractor, model: Oscillator, tau: Array, v: Array, fast: 
 
 
 def apart(states: Any, others: Any, phases: Phases, fast: float) -> Array:
-    """Distances of states (tau, v): phases in their units, velocities in units of `fast`; the larger counts.
+    """Distances of states: phases in their units, velocities in units of `fast`; the larger counts; inf of two walls.
 
     Examples
     --------
     >>> apart((np.array([7.1, 0.5]), np.array([1.0, 2.0])), (0.1, 1.0), Phases(7.0), 4.0).round(9).tolist()
     [0.0, 0.25]
     """
-    return np.asarray(np.maximum(np.abs(phases.off(states[0], others[0])), np.abs(states[1] - others[1]) / fast))
+    away = np.maximum(np.abs(phases.off(states[0], others[0])), np.abs(states[1] - others[1]) / fast)
+    return np.where(np.less(states[1], 0) != np.less(others[1], 0), np.inf, away)
 
 
 def new_attractors(
@@ -127,12 +130,11 @@ def new_attractors(
 
 
 def states_of(model: Oscillator, code: int, tau: float, v: float) -> tuple[Array, Array]:
-    """tau and v of all impacts of a periodic orbit, from one of them on; v < 0 of those of an upper wall."""
+    """The states of all impacts of a periodic orbit, from one of them on."""
     states = [(tau, v)]
     for _ in range(code // PLACES - 1):
-        at, speed = states[-1]
-        ends = iterate(model, at, abs(speed), 1, wall=None if model.upper is None else int(speed < 0))
-        states.append((float(ends.tau), -float(ends.v) if ends.wall else float(ends.v)))
+        ends = signed_iterate(model, *states[-1], 1)
+        states.append((float(ends.tau), float(ends.v)))
     times, speeds = np.array(states).T
     return times, speeds
 
@@ -141,17 +143,17 @@ def _surrounded(model: Oscillator, code: int, tau: float, v: float, fast: float)
     """An attractor with the largest neighbourhood whose border is observed to contract."""
     unit, count = phases_of(model).unit, code // PLACES
     times, speeds = states_of(model, code, tau, v)
-    size = SETTINGS.catch
+    size, sizes = SETTINGS.catch, np.abs(speeds)[:, None]
     while size > SETTINGS.close:
         attractor = Attractor(code, times, speeds, size)
         edge = np.array([(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if i or j]) * size
         start = (
             times[:, None] + unit * edge[:, 0],
-            np.maximum(speeds[:, None] + fast * edge[:, 1], 1e-3 * speeds[:, None]),
+            np.sign(speeds)[:, None] * np.maximum(sizes + fast * edge[:, 1], 1e-3 * sizes),
         )
         at, speed, turned = start[0].ravel(), start[1].ravel(), 0
         for turns in SETTINGS.turns:
-            ends = iterate(model, at, speed, (turns - turned) * count)
+            ends = signed_iterate(model, at, speed, (turns - turned) * count)
             if not (ends.status == 0).all() or not within(attractor, model, ends.tau, ends.v, fast, 2 * size).all():
                 break
             if within(attractor, model, ends.tau, ends.v, fast, size / 2).all():
@@ -208,7 +210,7 @@ def nearby_orbits(model: Oscillator, tau: Array, v: Array, n: Array, k: Array, f
     Examples
     --------
     >>> model = Oscillator("x", "cos(2*t)", "0.3", "1/2")
-    >>> end = iterate(model, np.array([0.3]), np.array([1.5]), 30)
+    >>> end = signed_iterate(model, np.array([0.3]), np.array([1.5]), 30)
     >>> beside = nearby_orbits(model, end.tau, end.v, np.array([2]), np.array([2]), 2.0)
     >>> bool(beside.found[0]), int(beside.n[0])
     (True, 1)
@@ -232,7 +234,7 @@ def nearby_orbits(model: Oscillator, tau: Array, v: Array, n: Array, k: Array, f
         moved = _newton(residual, slopes)
         aim = states[left] + moved
         there = np.abs((aim - starts[left]) / scale).max(axis=1, initial=0.0) < NEARBY.near
-        going = ~closed & there & (aim[:, 1] >= 0)
+        going = ~closed & there & ((aim[:, 1] < 0) == (starts[left, 1] < 0))
         left = left[going]
         if not left.size:
             break
@@ -256,11 +258,16 @@ def _return(model: Oscillator, states: Array, n: Array, k: Array) -> tuple[Array
     at, speed = states.T.copy()
     slopes = np.broadcast_to(np.eye(2), (len(states), 2, 2)).copy()
     for count in range(int(n.max(initial=0))):
-        going = np.flatnonzero((n > count) & (speed >= 0))
+        going = np.flatnonzero((n > count) & ~np.isnan(speed))
         if going.size:
-            slopes[going] = derivative(model, at[going], speed[going]).matrix @ slopes[going]
-            ends = iterate(model, at[going], speed[going], 1)
+            walls = None if model.upper is None else np.signbit(speed[going]).astype(np.int8)
+            slopes[going] = derivative(model, at[going], np.abs(speed[going]), wall=walls).matrix @ slopes[going]
+            ends = signed_iterate(model, at[going], speed[going], 1)
             at[going], speed[going] = ends.tau, np.where(ends.status == 0, ends.v, np.nan)
+    # D G is by v, which is -x' at an upper wall
+    sides = np.where(states[:, 1] < 0, -1.0, 1.0)
+    slopes[:, 0, 1] *= sides
+    slopes[:, 1, 0] *= sides
     missed = np.stack([at - states[:, 0] - k * phases.unit, speed - states[:, 1]], axis=-1)
     if not phases.clocked:
         missed[:, 0], slopes[:, 0], slopes[:, 1, 0] = 0.0, 0.0, 0.0
@@ -287,7 +294,7 @@ def _least(
     at, speed = states.T.copy()
     several = np.flatnonzero(attracting & (n > 1))
     for count in range(1, int(n[several].max(initial=1))):
-        ends = iterate(model, at[several], speed[several], 1)
+        ends = signed_iterate(model, at[several], speed[several], 1)
         at[several], speed[several] = ends.tau, ends.v
         whole = (n[several] % count == 0) & (k[several] * count % n[several] == 0)
         closes = apart((ends.tau, ends.v), states[several].T, phases_of(model), fast) < NEARBY.same

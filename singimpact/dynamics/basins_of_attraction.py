@@ -26,11 +26,12 @@ from singimpact.dynamics.attractors import (
     within,
 )
 from singimpact.dynamics.behaviours import LongRun, behaviour
-from singimpact.dynamics.long_run import futures, lift_offs, settled
+from singimpact.dynamics.long_run import futures, lift_offs_of_walls, settled
 from singimpact.dynamics.phases import phases_of
 from singimpact.dynamics.settling import SETTINGS as SETTLING, Study, classify, parted, settles
 from singimpact.dynamics.synchrony import confirmed, responses
-from singimpact.flights.orbits import iterate
+from singimpact.flights.orbits import signed_iterate
+from singimpact.flights.walls import wall_codes
 from singimpact.inputs import refuse, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.period import oscillates
@@ -61,6 +62,7 @@ class Basins(Result):
     ----------
     tau, v : the axes. attractors : the classes that occur. codes : shape (len(v), len(tau)), indices into `attractors`.
     first_chatter_completes : of the same shape, bool: the first chatter of the orbit completes.
+    wall : of the states of a model with two walls; None of others.
     """
 
     array_axes: ClassVar[Mapping[str, tuple[str, ...]]] = {
@@ -76,6 +78,7 @@ class Basins(Result):
     attractors: tuple[LongRun, ...]
     codes: Array
     first_chatter_completes: Array
+    wall: Any = None
 
     @property
     def classes(self) -> list[tuple[int, str, float]]:
@@ -156,6 +159,7 @@ def basins(
     executor: Any = None,
     output: Any = None,
     impacts: int = SETTINGS.impacts,
+    wall: Any = None,
 ) -> Basins:
     """Classes of size x size states.
 
@@ -165,7 +169,8 @@ def basins(
         not given, a turn of the fastest wave where there is none; v > 0 is looked at, from 0 to 2 when it is not given.
         Of a model without t they are those of x and x'.
     size : states a side. executor, output : as for `sweep`, where some rows are a case; threads without it, for flights
-        of arrays run side by side in one process. impacts : at most, of an orbit that does not settle.
+        of arrays run side by side in one process. impacts : at most, of an orbit that does not settle. wall : of the
+        states of a model with two walls: "lower" (also without it) or "upper".
 
     Raises
     ------
@@ -183,14 +188,17 @@ def basins(
         raise refuse("model", model, "an ImpactOscillator")
     if model.period is None and not oscillates(model.force(), model.forcing()):
         raise refuse("model", model, "one with a period, without t, or with sums of waves in t")
+    side = wall_codes(model, wall)
+    if side.shape or (model.autonomous and wall is not None):
+        raise refuse("wall", wall, "one wall, that of all states; none for a model without t, whose starts lie off it")
     if isinstance(size, bool) or not isinstance(size, int) or not 2 <= size <= 10_000:
         raise refuse("size", size, "an integer from 2 to 10000")
     (low, high), (slow, fast) = _window(model, tau, v)
     times = low + (np.arange(size) + 0.5) * (high - low) / size
     speeds = slow + (np.arange(size) + 0.5) * (fast - slow) / size
-    iterate(model, times[:1], speeds[-1:], 1)  # compiled here once, and not by every worker of a pool
-    study = Study(model, lift_offs(model), max(-slow, fast), whole("impacts", impacts, 1, 10**7), high)
-    tau, v = (coordinates.ravel() for coordinates in np.meshgrid(times, speeds))
+    signed_iterate(model, times[:1], speeds[-1:], 1)  # compiled here once, and not by every worker of a pool
+    study = Study(model, lift_offs_of_walls(model), max(-slow, fast), whole("impacts", impacts, 1, 10**7), high)
+    tau, v = (coordinates.ravel() for coordinates in np.meshgrid(times, -speeds if side else speeds))
     with ThreadPool() if executor is None else nullcontext(executor) as pool:
         table = _classes(study, (tau, v), size, pool, output)
     table, flown, first = table[:, :3], table[:, 3], table[:, 4] > 0
@@ -208,8 +216,9 @@ def basins(
         cycles = np.flatnonzero(table[:, 0] >= PLACES)
         table[cycles[_level(study, table[cycles])]] = LEVEL, 0.0, 0.0
     attractors, codes = _named(study, table)
+    walls = None if model.upper is None or model.autonomous else side[()]
     return (Basins if study.phases.clocked else StartBasins)(
-        model, times, speeds, attractors, codes.reshape(size, size), first.reshape(size, size)
+        model, times, speeds, attractors, codes.reshape(size, size), first.reshape(size, size), walls
     )
 
 
@@ -217,9 +226,10 @@ def _window(model: Oscillator, tau: Any, v: Any) -> tuple[tuple[float, float], t
     """The ends of both axes of a window."""
     if not phases_of(model).clocked:
         wall = as_float(model.clearance)
-        low, high = (wall, wall + 2 * max(abs(wall), 1.0)) if tau is None else window_ends("x", tau)
-        if low < wall:
-            raise refuse("window of x", tau, f"two numbers from the wall on, x >= {model.clearance}")
+        above = np.inf if model.upper is None else as_float(model.upper)
+        low, high = (wall, min(wall + 2 * max(abs(wall), 1.0), above)) if tau is None else window_ends("x", tau)
+        if low < wall or high > above:
+            raise refuse("window of x", tau, f"two numbers from the wall on, x >= {model.clearance}, to an upper one")
         return (low, high), window_ends("xdot", (-2, 2) if v is None else v)
     ends = (0.0, phases_of(model).unit) if tau is None else window_ends("tau", tau)
     slow, fast = window_ends("v", (0, 2) if v is None else v)
@@ -229,7 +239,7 @@ def _window(model: Oscillator, tau: Any, v: Any) -> tuple[tuple[float, float], t
 
 
 def classified(
-    fields: Mapping[str, Any], study: tuple[tuple[float, ...], float, int, float], states: tuple[tuple[float, ...], ...]
+    fields: Mapping[str, Any], study: tuple[Any, float, int, float], states: tuple[tuple[float, ...], ...]
 ) -> Array:
     """`classify` of some states. A module-level function, so that it can be pickled."""
     several = Study(Oscillator(**fields), *study)

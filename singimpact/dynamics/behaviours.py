@@ -23,7 +23,7 @@ from singimpact.dynamics.attractors import (
 )
 from singimpact.dynamics.settling import Study
 from singimpact.flights.horizons import horizon_of
-from singimpact.flights.orbits import iterate
+from singimpact.flights.orbits import signed_iterate
 
 KINDS = {
     OTHER: "not decided",
@@ -53,6 +53,8 @@ class LongRun:
     tau, v : the states of an orbit; of chatter the phase at which the mass lifts off, and 0; where
         the forcing never repeats, one late impact.
     period : of a limit cycle. x : of an equilibrium; of a limit cycle without impact the least one.
+    word : of a model with two walls their letters l and u, in the order of the impacts of an orbit; of a rest its wall,
+        and of chatter one from which the mass lifts off. v is < 0 at the upper wall there.
     """
 
     kind: str
@@ -64,19 +66,22 @@ class LongRun:
     horizon: float = 0.0
     period: float = 0.0
     x: float = np.nan
+    word: str = ""
 
     @property
     def name(self) -> str:
         """The name in the legend of the picture, and what would decide a class that is not decided."""
         if self.kind == "orbit" and self.k:
-            return f"({self.n:.0f}, {self.k}) orbit"
+            return f"({self.word or f'{self.n:.0f}'}, {self.k}) orbit"
         count = f"{self.impacts:,}".replace(",", " ")
+        wall = {"l": "lower", "u": "upper"}.get(self.word, "")
+        lifts_off, at_wall = (f", lifts off the {wall} wall", f" at the {wall} wall") if wall else ("", "")
         touches = f"of {self.n:.0f} impact" + "s" * (self.n > 1) if self.n else "without impact"
         names = {
             "orbit": f"limit cycle {touches}, period {self.period:.6g}",
             "equilibrium": f"rest off the wall at x = {self.x:.6g}",
-            "chatter": f"(inf, {self.k}) chatter for ever" if self.k else "chatter for ever",
-            "rest": "rest for ever",
+            "chatter": f"{f'(inf, {self.k}) ' if self.k else ''}chatter for ever{lifts_off}",
+            "rest": f"rest for ever{at_wall}",
             "chaotic": f"no period in {count} impacts, neighbours separate",
             "not decided": f"not settled in {count} impacts: larger impacts= may decide",
             "sensitive": "rounding decides: neighbours 1e-15 away part",
@@ -102,15 +107,20 @@ def behaviour(study: Study, row: Array) -> LongRun:
         n, k = divmod(int(code), PLACES)
         times, speeds = states_of(model, int(code), tau, v)
         # of a cycle the sum of its flights, each from time 0
-        period = k * study.phases.unit or float(iterate(model, 0 * speeds, speeds, 1).tau.sum())
-        return LongRun("orbit", n, k, times, speeds, period=period)
+        period = k * study.phases.unit or float(signed_iterate(model, 0 * speeds, speeds, 1).tau.sum())
+        letters = "".join("lu"[speed < 0] for speed in speeds.tolist())
+        word = "" if model.upper is None else min(letters[i:] + letters[:i] for i in range(n))
+        return LongRun("orbit", n, k, times, speeds, period=period, word=word)
     if code == CYCLE:
         return LongRun("orbit", 0, 0, none, none, period=tau, x=wall + v)
     if code == STILL:
         return LongRun("equilibrium", 0, 0, none, none, x=wall + tau)
     if code == CHATTER:
-        at = np.array([study.lift_offs[int(tau)]]) if tau >= 0 and study.lift_offs else none
-        return LongRun("chatter" if tau >= 0 else "rest", np.inf, int(v), at, 0 * at)
+        lifted = study.lift_offs[int(tau) :][:1] if tau >= 0 else ()
+        walls = [side for _, side in lifted] if tau >= 0 else [int(-1 - tau)]
+        word = "lu"[walls[0]] if walls and model.upper is not None else ""
+        at = np.array([phase for phase, _ in lifted])
+        return LongRun("chatter" if tau >= 0 else "rest", np.inf, int(v), at, 0 * at, word=word)
     if code == RESPONSE:
         return LongRun("quasi-periodic", 0, 0, np.array([tau]), np.array([v]))
     if code == RESTING:

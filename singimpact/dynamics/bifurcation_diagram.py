@@ -32,7 +32,6 @@ from singimpact.dynamics.attractors import (
 from singimpact.dynamics.behaviours import LongRun, behaviour
 from singimpact.dynamics.free_motion import free_fates
 from singimpact.dynamics.long_run import chaotic
-from singimpact.dynamics.lyapunov import lyapunov
 from singimpact.dynamics.orbit import Orbit, dropped_orbit, orbit
 from singimpact.dynamics.phases import Times, phases_of
 from singimpact.dynamics.settling import Study
@@ -59,8 +58,6 @@ class BifurcationSettings:
     # events of the longest period that is looked for, and relative distance of events that repeat
     period: int = 64
     close: float = 1e-6
-    # impacts, between two walls, of the exponents that tell chaos from an orbit that has not settled
-    exponent: int = 4000
 
 
 SETTINGS = BifurcationSettings()
@@ -231,14 +228,9 @@ def _followed(first: Orbit, flown: tuple[int, int, int]) -> tuple[Orbit, Row]:
         last = orbit(last.oscillator, _phase(last, float(last.tau[-1])), float(last.v[-1]), block, wall=_wall(last))
         count += block
     if row is None:
-        tau, v = np.array([_phase(last, float(last.tau[-1]))]), last.v[-1:]
-        if last.kind[-1] != "impact":
-            grows = False
-        elif last.wall is None:
-            grows = bool(chaotic(last.oscillator, tau, v, max(float(last.v.max()), 1e-300))[0])
-        else:
-            rates = lyapunov(last.oscillator, tau[0], v[0], SETTINGS.exponent, transient=0, wall=_wall(last))
-            grows = bool(rates.exponents[0] > 3 * rates.error[0])
+        tau, v = np.array([_phase(last, float(last.tau[-1]))]), last.speeds[-1:]
+        flies = last.kind[-1] == "impact"
+        grows = flies and bool(chaotic(last.oscillator, tau, v, max(float(last.v.max()), 1e-300))[0])
         row = (CHAOS if grows else OTHER, 0.0, 0.0)
     return last, row
 
@@ -259,15 +251,16 @@ def _ending(flown_orbit: Orbit) -> Row | None:
     last = flown_orbit.phases[-1][0] if flown_orbit.phases else ""
     if last in ("no_return", "unresolved"):
         if flown_orbit.oscillator.autonomous:
-            height = flown_orbit.height if flown_orbit.tau.size == 1 else 0.0
-            row = free_fates(flown_orbit.oscillator, np.array([height]), flown_orbit.v[-1:])[0]
+            height = flown_orbit.places[-1:] - as_float(flown_orbit.oscillator.clearance)
+            height += flown_orbit.height if flown_orbit.tau.size == 1 else 0.0
+            row = free_fates(flown_orbit.oscillator, height, flown_orbit.speeds[-1:])[0]
             if np.isfinite(row[0]) and row[0] not in (AWAY, STUCK):
                 return tuple(row.tolist())
         if last == "unresolved":
             return (STUCK, 0.0, 0.0)
         return (GONE if np.isinf(flown_orbit.end) else AWAY, 0.0, 0.0)
     if last == "sticking" and not np.isfinite(flown_orbit.phases[-1][2]):
-        return (CHATTER, -1.0, 0.0)
+        return (CHATTER, -1.0 - (_wall(flown_orbit) or 0), 0.0)
     shown = np.isin(flown_orbit.kind, ("impact", "graze", "complete"))
     tau, v = flown_orbit.tau[shown], flown_orbit.speeds[shown]
     phases, fast = phases_of(flown_orbit.oscillator), max(float(np.abs(v).max(initial=0.0)), 1e-300)
@@ -277,6 +270,8 @@ def _ending(flown_orbit: Orbit) -> Row | None:
     if not phases.clocked:
         n = _cycle(np.diff(tau), v[1:])
         return _orbit(flown_orbit, n, fast) if n else None
+    if turn := _between_lift_offs(flown_orbit):
+        return (CHATTER, 0.0, float(phases.periods(np.array(turn))))
     for n in range(1, min(SETTINGS.period, tau.size // 2) + 1):
         last_ones, before = slice(-n, None), slice(-2 * n, -n)
         if apart((tau[last_ones], v[last_ones]), (tau[before], v[before]), phases, fast).max() < SETTINGS.close:
@@ -286,9 +281,21 @@ def _ending(flown_orbit: Orbit) -> Row | None:
     return None
 
 
+def _between_lift_offs(flown_orbit: Orbit) -> float:
+    """The time since the last lift-off of the phase and the wall of the last one, which fix what follows; 0 without."""
+    lifted = np.flatnonzero(flown_orbit.kind == "release")
+    if not lifted.size:
+        return 0.0
+    times = flown_orbit.tau[lifted]
+    same = np.abs(phases_of(flown_orbit.oscillator).off(times[:-1], times[-1])) < SETTINGS.close
+    if flown_orbit.wall is not None:
+        same &= flown_orbit.wall[lifted[:-1]] == flown_orbit.wall[lifted[-1]]
+    return float(times[-1] - times[:-1][same][-1]) if same.any() else 0.0
+
+
 def _response(flown_orbit: Orbit, fast: float) -> Row | None:
     """The row of an orbit under a forcing that never repeats, where a neighbour comes to it."""
-    tau, v = float(flown_orbit.tau[-1]), float(flown_orbit.v[-1])
+    tau, v = float(flown_orbit.tau[-1]), float(flown_orbit.speeds[-1])
     if v == 0:
         return None
     return (RESPONSE, tau, v) if meets(Study(flown_orbit.oscillator, (), fast, 1), tau, v) else None
@@ -299,7 +306,7 @@ def _cycle(spans: Array, v: Array) -> int:
 
     The distance that is left is that of a geometric sequence with the ratio of the last two changes.
     """
-    sizes = Times(max(float(spans.max(initial=0.0)), 1e-300)), max(float(v.max(initial=0.0)), 1e-300)
+    sizes = Times(max(float(spans.max(initial=0.0)), 1e-300)), max(float(np.abs(v).max(initial=0.0)), 1e-300)
     for n in range(1, min(SETTINGS.period, v.size // 3) + 1):
         parts = [(spans[v.size - k * n :][:n], v[v.size - k * n :][:n]) for k in (1, 2, 3)]
         last, before = (apart(parts[i], parts[i + 1], *sizes).max() for i in (0, 1))
@@ -313,8 +320,6 @@ def _orbit(flown_orbit: Orbit, n: int, fast: float) -> Row | None:
     end, v = flown_orbit.tau[flown_orbit.kind == "impact"], flown_orbit.speeds[flown_orbit.kind == "impact"]
     phases = phases_of(flown_orbit.oscillator)
     turns, tau = phases.periods(end[-1:] - end[-1 - n]).astype(np.int64), phases.of(end[-1:])
-    if flown_orbit.wall is not None:
-        return (n * PLACES + int(turns[0]), float(tau[0]), float(v[-1]))
     beside = nearby_orbits(flown_orbit.oscillator, tau, v[-1:], np.array([n]), turns, fast)
     away = apart((beside.tau, beside.v), (tau, v[-1]), phases, fast)
     if not np.where(beside.found, away < SETTINGS.close, beside.returned)[0]:

@@ -18,7 +18,7 @@ from singimpact.algebra.precision import bits_at, digits_at, for_user
 from singimpact.algebra.rings import Multiprecision
 from singimpact.contact.contact import Contact
 from singimpact.dynamics import enclosed
-from singimpact.dynamics.remaining import chatter_completes, remaining
+from singimpact.dynamics.remaining import chatter_completes, remaining, stays_below
 from singimpact.flights.blocks import gathered
 from singimpact.flights.causes import decoded
 from singimpact.flights.compiled_model import compiled_model
@@ -190,6 +190,11 @@ def _in_doubles(osc: Oscillator, states: States, most: int) -> ChatterLimit:
     codes = np.full(count, NO_ROOM, np.int8)
     if compiled is not None:
         codes[at], (tau[at], error[at], impacts[at]) = compiled
+        # summed up without a flight that shows that the other wall is out of reach
+        summed = np.flatnonzero((codes == COMPLETED) & (impacts == 0) & (osc.upper is not None))
+        if summed.size:
+            pushes = acceleration(osc, states.tau[summed])
+            codes[summed[~stays_below(osc, states.v[summed], pushes)]] = NO_ROOM
         if not isinstance(states.turns, float):
             tau += states.turns
             error += np.where(states.turns == 0, 0.0, np.abs(tau) * EPSILON / 2)
@@ -356,16 +361,19 @@ class _Flown:
         """
         tau, v, self.push = self.times[-1], self.speeds[-1], a
         summed = self.short or (self.law.tried and a < 0)
+        crosses = summed and not stays_below(self.osc, v, a)
         if a >= 0 and len(self.times) > 1:
             self.over = tau, 0.0, Status.lifts_off
-        elif summed and (error <= EPSILON * max(abs(tau), left) / 4 or v < 1e-290):
+        elif summed and not crosses and (error <= EPSILON * max(abs(tau), left) / 4 or v < 1e-290):
             self.over = tau + left, error, Status.complete
-        elif self.short and not np.isfinite(error):  # a derivative of a_c leaves the range of doubles
+        elif self.short and not crosses and not np.isfinite(error):  # a derivative of a_c leaves the range of doubles
             self.status, self.cause = Status.unresolved, Cause.overflow
         elif self._left() <= 0:
             self.status, self.cause = Status.unresolved, Cause.impacts_exhausted
         else:
-            count = impacts_until(self.osc, error, EPSILON * abs(tau) / 8) if summed else 256
+            count = 1 if crosses else 256
+            if summed and not crosses:
+                count = impacts_until(self.osc, error, EPSILON * abs(tau) / 8)
             self.status = self._fly(count, 0.0 if self.short or self.law.elastic else ENDING.near)
 
     def ended(self) -> ChatterLimit:

@@ -14,6 +14,7 @@ from singimpact.algebra.rings import DOUBLES
 from singimpact.dynamics.attractors import AWAY, CYCLE, LEVEL, STILL, STUCK
 from singimpact.dynamics.phases import phases_of
 from singimpact.flights.compiled_model import compiled_model
+from singimpact.flights.flat_numbers import gap_of
 from singimpact.flights.horizons import horizon_of
 from singimpact.oscillator.model import Oscillator
 
@@ -52,7 +53,7 @@ def free_fates(model: Oscillator, height: Array, xdot: Array) -> Array:
 
     Parameters
     ----------
-    model : one without t. height, xdot : x - c >= 0 and x', shape (n,).
+    model : one without t. height, xdot : x - c >= 0 and x', shape (n,). With two walls a motion may come to either.
 
     Examples
     --------
@@ -60,6 +61,16 @@ def free_fates(model: Oscillator, height: Array, xdot: Array) -> Array:
     >>> free_fates(model, np.array([3.1]), np.array([0.0]))[0, 1].round(6).tolist()
     6.663287
     """
+    rows = _fates(model, height, xdot)
+    if model.upper is not None:  # and as seen from the upper wall, which decides where it says that the motion comes
+        above = _fates(model.mirrored, gap_of(model)[0] - height, -xdot)
+        open_ = ~np.isin(above[:, 0], (CYCLE, STILL, LEVEL))
+        rows[open_] = above[open_]
+    return rows
+
+
+def _fates(model: Oscillator, height: Array, xdot: Array) -> Array:
+    """`free_fates` with the lower wall alone."""
     rows = np.full((height.size, 3), np.nan)
     for first in range(0, height.size, SETTINGS.block):
         chosen = np.arange(first, min(first + SETTINGS.block, height.size))

@@ -15,9 +15,10 @@ from singimpact.dynamics.attractors import AWAY, CHATTER, GONE, OTHER
 from singimpact.dynamics.lift_off import release
 from singimpact.dynamics.orbit import orbit
 from singimpact.dynamics.phases import phases_of
-from singimpact.flights.orbits import iterate
+from singimpact.flights.orbits import signed_iterate
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration
+from singimpact.status import Wall
 
 
 @dataclass(frozen=True)
@@ -60,25 +61,39 @@ def lift_offs(model: Oscillator) -> tuple[float, ...]:
     return tuple(point.tau for point in tangency_points(model) if point.kind == "gamma")
 
 
-def next_lift_off(phases: tuple[float, ...], tau: Array) -> Array:
-    """The place in `phases` of the first one after times within a period; -1 where there is none at all."""
-    return np.full(tau.size, -1) if not phases else np.searchsorted(np.array(phases), tau) % len(phases)
+def lift_offs_of_walls(model: Oscillator) -> tuple[tuple[float, int], ...]:
+    """Phase and wall of all lift-offs in one period."""
+    alone = [model] if model.upper is None else [model.one_wall(side.name) for side in Wall]
+    return tuple((phase, wall) for wall, side in enumerate(alone) for phase in lift_offs(side))
 
 
-def futures(model: Oscillator, phases: tuple[float, ...], classify: Callable[[Array, Array], Array]) -> list[Future]:
+def next_lift_off(lifted: tuple[tuple[float, int], ...], tau: Array, wall: int) -> Array:
+    """The place in `lifted` of the first one at a wall after times within a period; where it has none at all -1, and
+    -2 for the upper one.
+    """
+    places = [place for place, (_, side) in enumerate(lifted) if side == wall]
+    if not places:
+        return np.full(tau.size, -1 - wall)
+    phases = np.array([lifted[place][0] for place in places])
+    return np.array(places)[np.searchsorted(phases, tau) % len(places)]
+
+
+def futures(
+    osc: Oscillator, lifted: tuple[tuple[float, int], ...], classify: Callable[[Array, Array], Array]
+) -> list[Future]:
     """The motion after each lift-off, by the classes that `classify` gives to the state after the first impact."""
     rows = []
-    for phase in phases:
-        lifted = _lifted(model, phase)
-        first = orbit(model, lifted, 0, impacts=1)
+    for phase, wall in lifted:
+        model = osc.mirrored if wall else osc
+        begin = _lifted(model, phase)
+        first = orbit(model, begin, 0, impacts=1)
         if first.kind.tolist() != ["start", "impact"]:
             away = GONE if np.isinf(first.end) else AWAY
             code = away if first.phases[-1][0] == "no_return" else OTHER
             rows.append(Future((code, 0.0, 0.0), np.nan))
             continue
-        tau, v = float(first.tau[1]), float(first.v[1])
-        row = tuple(classify(np.array([tau]), np.array([v]))[0].tolist())
-        time = _rest_of(model, lifted) - lifted if row[0] == CHATTER and row[1] >= 0 else np.nan
+        row = tuple(classify(first.tau[1:], first.speeds[1:] * (-1 if wall else 1))[0].tolist())
+        time = _rest_of(model, begin) - begin if row[0] == CHATTER and row[1] >= 0 else np.nan
         rows.append(Future(row, time))
     return rows
 
@@ -167,7 +182,7 @@ def _grown(
 
     Benettin et al. (1980): the distance is measured, then set back along the same direction.
     """
-    ends, phases = [iterate(model, *states, SETTINGS.block) for states in (first, second)], phases_of(model)
+    ends, phases = [signed_iterate(model, *states, SETTINGS.block) for states in (first, second)], phases_of(model)
     away = np.stack([phases.off(ends[1].tau, ends[0].tau), (ends[1].v - ends[0].v) / fast])
     with np.errstate(all="ignore"):
         size = np.hypot(*away)
@@ -175,4 +190,5 @@ def _grown(
         step = away * np.where(size > 1e-16, SETTINGS.apart / size, 1.0)
     row[(ends[0].status != 0) | (ends[1].status != 0)] = np.nan
     tau, v = phases.of(ends[0].tau), ends[0].v
-    return (tau, v), (tau + step[0] * phases.unit, np.maximum(v + step[1] * fast, 0.5 * v)), row
+    side = np.where(v < 0, -1.0, 1.0)
+    return (tau, v), (tau + step[0] * phases.unit, side * np.maximum(side * (v + step[1] * fast), 0.5 * side * v)), row

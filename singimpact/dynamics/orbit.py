@@ -14,6 +14,7 @@ from singimpact.algebra.expressions import subtract
 from singimpact.algebra.numbers import EPSILON, Array, as_float, constant, float_array
 from singimpact.dynamics.chatter import ENDING, chatter_left, impacts_until
 from singimpact.dynamics.lift_off import periods_between, release
+from singimpact.dynamics.remaining import stays_below
 from singimpact.dynamics.sampling import Section, sampled
 from singimpact.flights.flight_path import Path
 from singimpact.flights.horizons import horizon_of
@@ -26,6 +27,7 @@ from singimpact.flights.states import States
 from singimpact.flights.walls import wall_codes
 from singimpact.inputs import InputError, refuse, shown, whole
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.result import Result, plain
 from singimpact.status import Status, Wall
 
@@ -339,8 +341,11 @@ class _Run:
             return False
         time, error = left
         resolution = EPSILON * max(abs(self.tau), self.tau - self.begun)
-        if not error <= resolution:
-            self.more = impacts_until(self.here, error, resolution)
+        below = True
+        if self.osc.upper is not None:
+            below = bool(stays_below(self.here, self.v, float(acceleration(self.here, np.array([self.tau]))[0])))
+        if not (error <= resolution and below):
+            self.more = impacts_until(self.here, error, resolution) if below else 1
             return False
         self._go("chatter", self.tau + time, 0.0, "complete")
         self.flown, self.short = self.flown + 1, False

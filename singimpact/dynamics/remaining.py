@@ -20,6 +20,7 @@ from singimpact.algebra.expressions import MINUS_ONE, Expression, evaluate, mult
 from singimpact.algebra.numbers import Array, as_float, compare
 from singimpact.algebra.rings import DOUBLES
 from singimpact.contact.contact import Contact
+from singimpact.flights.flat_numbers import gap_of
 from singimpact.generated.completion import chatter_terms
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration, at_wall
@@ -232,6 +233,18 @@ def rest_after(osc: Oscillator, v: Array, a: Array) -> Array:
             return np.asarray(-2 * v / (a * (1 - as_float(osc.slope_at_rest()))))
         # terms of both signs: their sum is too small where v is beyond the reach of the series
         return np.asarray(-2 / a * sum(abs(s) * v**p for p, s in sum_of_speeds(osc)))
+
+
+def stays_below(osc: Oscillator, v: Array | float, a: Array | float) -> Array:
+    """Whether flights of chatter where a_c = a presses do not come to another wall, even if |a| falls to a half.
+
+    Examples
+    --------
+    >>> stays_below(Oscillator("0", "-2", 0, "1/2", upper=1), np.array([1.0, 2.0]), np.array([-2.0, -2.0])).tolist()
+    [True, False]
+    """
+    with np.errstate(invalid="ignore"):  # without one the distance is inf, and a may be 0
+        return np.asarray(v * v < -a * gap_of(osc)[0])
 
 
 def left_of_chatter(osc: Oscillator, v: Array, a: Array, jets: dict[str, Any], forces: dict[str, float]) -> Any:

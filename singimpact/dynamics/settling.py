@@ -29,10 +29,12 @@ from singimpact.dynamics.attractors import (
 from singimpact.dynamics.free_motion import free_fates
 from singimpact.dynamics.long_run import chaotic, next_lift_off
 from singimpact.dynamics.phases import Phases, phases_of
-from singimpact.dynamics.remaining import rest_after
+from singimpact.dynamics.remaining import rest_after, stays_below
+from singimpact.flights.flat_numbers import gap_of
 from singimpact.flights.impact_map import impact_map
 from singimpact.flights.off_wall import launch
-from singimpact.flights.orbits import iterate
+from singimpact.flights.orbits import signed, signed_iterate
+from singimpact.flights.walls import at_walls, each_wall
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.status import Status
@@ -76,13 +78,14 @@ SETTINGS = SettlingSettings()
 
 @dataclass(frozen=True)
 class Study:
-    """The data of a study of states: the model, the phases at which the mass lifts off, the fastest launch, impacts.
+    """The data of a study of states: the model, phase and wall of each lift-off, the fastest launch, impacts.
 
-    States are (tau, v) at the wall, of which the latest tau is `start`; those of a model without a clock are (x, x').
+    States are (tau, v) at the wall, with -v at an upper one; the latest tau is `start`. Those of a model without a
+    clock are (x, x').
     """
 
     model: Oscillator
-    lift_offs: tuple[float, ...]
+    lift_offs: tuple[tuple[float, int], ...]
     fast: float
     impacts: int
     start: float = 0.0
@@ -124,7 +127,7 @@ def parted(study: Study, tau: Array, v: Array, impacts: Array) -> Array:
     sides = np.array([[0.0], [SETTINGS.neighbour]])
     at, speed, count = tau + sides * study.phases.unit, v * (1 + sides), 0
     while left.size:
-        ends = iterate(study.model, at[:, left], speed[:, left], SETTINGS.watched, SETTINGS.tolerance)
+        ends = signed_iterate(study.model, at[:, left], speed[:, left], SETTINGS.watched, SETTINGS.tolerance)
         count += SETTINGS.watched
         at[:, left], speed[:, left] = study.phases.of(ends.tau), ends.v
         one, other = ((at[side, left], speed[side, left]) for side in (0, 1))
@@ -162,11 +165,11 @@ class _Run:
         """The first flights of states (x, x') of a model without a clock, to the wall."""
         model, x, xdot = self.study.model, self.tau, self.v
         ends = launch(model, x, xdot, 0.0, horizon=self.study.horizon)
-        rows, self.tau, self.v = ended(ends.status), 0.0 * x, np.array(ends.v)
+        rows, self.tau, self.v = ended(ends.status), 0.0 * x, signed(ends)
         free = np.flatnonzero(_open_flights(ends.status))
         late = free[self._free(rows, free, x[free] - as_float(model.clearance), xdot[free])]
-        self.v[late] = launch(model, x[late], xdot[late], 0.0).v
-        self._decide(~(self.v > 0), rows)
+        self.v[late] = signed(launch(model, x[late], xdot[late], 0.0))
+        self._decide(~(np.abs(self.v) > 0), rows)
 
     def _free(self, rows: Array, free: Array, height: Array, xdot: Array) -> Array:
         """Put in the rows of motions that met no wall for long; whether these meet it all the same."""
@@ -178,8 +181,8 @@ class _Run:
 
     def _first_stage(self) -> None:
         """The number of impacts in which a plain chatter becomes slow, with searches at doubling distances."""
-        r = as_float(self.study.model.slope_at_rest())
-        slowest = ceil(log(SETTINGS.rest) / log(r)) if 0 < r < 1 else 0
+        rates = [as_float(model.slope_at_rest()) for model, _ in each_wall(self.study.model, self.v)]
+        slowest = max(ceil(log(SETTINGS.rest) / log(r)) if 0 < r < 1 else 0 for r in rates)
         most = min(SETTINGS.transient + slowest, SETTINGS.limit, self.study.impacts)
         block = SETTINGS.block
         while self.open.size and self.count < most:
@@ -230,20 +233,27 @@ class _Run:
     def _fly(self, impacts: int) -> None:
         """Impacts of all open states; those whose flights end are decided."""
         study, at = self.study, self.open
-        ends = iterate(study.model, self.tau[at], self.v[at], impacts, SETTINGS.tolerance, study.horizon)
+        ends = signed_iterate(study.model, self.tau[at], self.v[at], impacts, SETTINGS.tolerance, study.horizon)
         self.count += impacts
         self.tau[at], self.v[at] = study.phases.of(ends.tau), ends.v
         rests = chattering(study, self.tau[at], ends.v)
-        rows, over = ended(ends.status), (ends.status != 0) | ~np.isfinite(ends.tau) | ~(ends.v >= 0)
+        rows, over = ended(ends.status), (ends.status != 0) | ~np.isfinite(ends.tau) | np.isnan(ends.v)
         if not study.phases.clocked:
             free = np.flatnonzero(_open_flights(ends.status))
-            late = free[self._free(rows, free, np.zeros(free.size), ends.v[free])]
-            self.v[at[late]] = impact_map(study.model, 0 * ends.v[late], ends.v[late]).v
-            over[late] = ~(self.v[at[late]] > 0)
+            above = np.signbit(ends.v)
+            heights = np.where(above, gap_of(study.model)[0], 0.0)
+            late = free[self._free(rows, free, heights[free], ends.v[free])]
+            walls = None if study.model.upper is None else above[late].astype(np.int8)
+            step = at_walls(impact_map, study.model, walls, (0 * ends.v[late], np.abs(ends.v[late])))
+            self.v[at[late]] = signed(step)
+            over[late] = ~(np.abs(self.v[at[late]]) > 0)
             # off a wall that pushes, flights of so slow a launch are grazes to rounding
-            over |= ~rests & (ends.v <= SETTINGS.rest * study.fast)
+            over |= ~rests & (np.abs(ends.v) <= SETTINGS.rest * study.fast)
         rows[rests, 0] = CHATTER
-        rows[rests, 1] = next_lift_off(study.lift_offs, at_rest(study, self.tau[at[rests]], self.v[at[rests]]))
+        resting = np.flatnonzero(rests)
+        ended_at = at_rest(study, self.tau[at[resting]], self.v[at[resting]])
+        for wall, (_, there) in enumerate(each_wall(study.model, self.v[at[resting]])):
+            rows[resting[there], 1] = next_lift_off(study.lift_offs, ended_at[there], wall)
         self._decide(rests | over, rows)
 
     def _catch(self) -> bool:
@@ -294,17 +304,27 @@ def _open_flights(status: Array) -> Array:
 
 def at_rest(study: Study, tau: Array, v: Array) -> Array:
     """The phase, within a period, at which the remaining chatter ends, to first order."""
-    return np.asarray(study.phases.of(tau + rest_after(study.model, v, acceleration(study.model, tau))))
+    after = np.empty(tau.size)
+    for model, at in each_wall(study.model, v):
+        after[at] = rest_after(model, np.abs(v[at]), acceleration(model, tau[at]))
+    return np.asarray(study.phases.of(tau + after))
 
 
 def chattering(study: Study, tau: Array, v: Array) -> Array:
     """Where an orbit is slow, a_c < 0, and the mass comes to rest before a_c can become positive.
 
     What is left of chatter lasts about 2 v/((1 - r)|a|), see `rest_after`; over eight times that, a_c must keep its
-    sign.
+    sign. Between two walls the next flight must not reach the other one.
     """
-    model, fast = study.model, study.fast
     rests = np.zeros(tau.size, dtype=bool)
+    for model, at in each_wall(study.model, v):
+        rests[at] = _chattering(study, model, tau[at], np.abs(v[at]))
+    return rests
+
+
+def _chattering(study: Study, model: Oscillator, tau: Array, v: Array) -> Array:
+    """`chattering` of states at the lower wall of a model."""
+    fast, rests = study.fast, np.zeros(tau.size, dtype=bool)
     slow = np.flatnonzero(np.isfinite(tau) & np.isfinite(v) & (np.nan_to_num(v) <= SETTINGS.slow * fast))
     now, speed = acceleration(model, tau[slow]), v[slow]
     with np.errstate(all="ignore"):
@@ -312,5 +332,5 @@ def chattering(study: Study, tau: Array, v: Array) -> Array:
     short = (now < 0) & (rest < SETTINGS.lasting * study.phases.unit)
     pressed = [acceleration(model, tau[slow] + np.where(short, k * rest, 0.0)) < now / 2 for k in (2, 4, 8)]
     settled = (now < 0) & (speed <= SETTINGS.rest * fast)
-    rests[slow] = settled | (short & np.all(pressed, axis=0))
+    rests[slow] = stays_below(model, speed, now) & (settled | (short & np.all(pressed, axis=0)))
     return rests

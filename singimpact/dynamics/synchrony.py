@@ -14,7 +14,7 @@ from singimpact.dynamics.lift_off import release
 from singimpact.dynamics.long_run import growth
 from singimpact.dynamics.settling import Study, at_rest, chattering, ended
 from singimpact.flights.impact_map import impact_map
-from singimpact.flights.orbits import iterate
+from singimpact.flights.orbits import signed_iterate
 from singimpact.status import Status
 
 
@@ -64,13 +64,13 @@ class Responses:
         model = self.study.model
         left = self._going(chosen, until)
         while left.size:
-            ends = iterate(model, self.tau[left], self.v[left], 1)
+            ends = signed_iterate(model, self.tau[left], self.v[left], 1)
             self.tau[left], self.v[left] = ends.tau, ends.v
             self.flown[left] += 1
             resting = chattering(self.study, ends.tau, ends.v) | np.isin(ends.status, (Status.complete, Status.sticks))
             for index in left[resting].tolist():
                 self._lift(index)
-            over = ~resting & ((ends.status != 0) | ~(ends.v > 0))
+            over = ~resting & ((ends.status != 0) | ~(np.abs(ends.v) > 0))
             self.rows[left[over]] = ended(ends.status[over])
             left = self._going(left, until)
 
@@ -81,22 +81,23 @@ class Responses:
 
     def _lift(self, index: int) -> None:
         """The first impact after the rest that a chatter ends in."""
-        model, tau = self.study.model, float(self.tau[index])
+        tau, above = float(self.tau[index]), bool(np.signbit(self.v[index]))
+        model, side = (self.study.model.mirrored, -1.0) if above else (self.study.model, 1.0)
         rest = tau if self.v[index] == 0 else float(at_rest(self.study, np.array([tau]), self.v[index : index + 1])[0])
         self.rests[index] += 1
         # every orbit that rests between the same two zeros of a_c lifts off with the others
-        earlier = [after for begin, end, *after in self.lifted if begin <= rest <= end]
+        earlier = [after for begin, end, wall, *after in self.lifted if begin <= rest <= end and wall == side]
         if not earlier:
             end = release(model, rest)
             after = [np.nan, 0.0 if np.isinf(end) else np.nan]
             if np.isfinite(end):
                 step = impact_map(model, end, 0.0)
-                after = [float(step.tau), float(step.v)]
-            self.lifted.append((rest, end, *after))
+                after = [float(step.tau), float(step.v) * (-side if step.wall else side)]
+            self.lifted.append((rest, end, side, *after))
             earlier = [after]
         tau, v = earlier[0]
         self.tau[index], self.v[index] = tau, v
-        if not v > 0:
+        if not abs(v) > 0:
             self.rows[index] = (CHATTER, -1.0, 0.0) if v == 0 else (STUCK, 0.0, 0.0)
 
     def _joined(self, leader: Array) -> Array:

@@ -165,6 +165,32 @@ def iterate(
     return Ends(*(last if len(model.walls) == 2 else last[:3]))
 
 
+def signed_iterate(
+    osc: Oscillator,
+    tau: Array | float,
+    xdot: Array | float,
+    impacts: int,
+    tolerance: float = EPSILON,
+    horizon: float | None = None,
+) -> Ends:
+    """`iterate` of states (tau, x') with x' instead of v, before and after: x' < 0, or -0.0, at an upper wall.
+
+    Examples
+    --------
+    >>> signed_iterate(Oscillator("0", "-2", 0, "1/2", upper=2), 0, -1.5, 1).v.round(6).tolist()  # 2 - 1.5 t - t*t = 0
+    1.600781
+    """
+    if osc.upper is None:
+        return iterate(osc, tau, xdot, impacts, tolerance, horizon)
+    ends = iterate(osc, tau, np.abs(xdot), impacts, tolerance, horizon, np.signbit(xdot).astype(np.int8))
+    return replace(ends, v=signed(ends))
+
+
+def signed(ends: Any) -> Array:
+    """x' just after impacts, from a record with v and walls: -v at an upper wall."""
+    return np.array(ends.v if ends.wall is None else np.where(ends.wall == Wall.upper, -ends.v, ends.v))
+
+
 def _from_rest(osc: Oscillator, states: States, impacts: int, tolerance: float) -> tuple[Array, Array, Array]:
     """The last states and statuses where impacts leave no velocity: from the first one on the mass starts at rest.
 

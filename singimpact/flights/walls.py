@@ -73,6 +73,21 @@ def at_walls(
     return _together([parts[0], turned(parts[1])], chosen, codes.shape)
 
 
+def each_wall(osc: Oscillator, xdot: Array) -> list[tuple[Oscillator, Array]]:
+    """The model whose lower wall is that of states, and their places; x' < 0, or -0.0, of those at an upper wall.
+
+    Examples
+    --------
+    >>> pair = Oscillator("x", "cos(t)", -1, 1, upper=2)
+    >>> [(str(model.clearance), at.tolist()) for model, at in each_wall(pair, np.array([0.5, -0.5, 1.0]))]
+    [('-1', [0, 2]), ('-2', [1])]
+    """
+    if osc.upper is None:
+        return [(osc, np.arange(xdot.size))]
+    above = np.signbit(xdot)
+    return [(osc, np.flatnonzero(~above)), (osc.mirrored, np.flatnonzero(above))]
+
+
 def shared_out(fly: Callable[..., Any], osc: Oscillator, wall: Any, states: tuple[Any, ...], options: Any) -> Any:
     """`at_walls` of a method of tau and v, which may be given by their names, and of options."""
     columns = (*states, *(options.pop(name) for name in ("tau", "v")[len(states) :]))

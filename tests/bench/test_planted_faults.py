@@ -29,7 +29,9 @@ LINEAR = si.linear("2.8", "0.1", "0.8")
 CHATTERS = si.linear("2", "0.7", "0.5")
 PLASTIC = si.models.luck_mehta(G="3.2", restitution=0)
 DUFFING = si.ImpactOscillator("x + xdot/10 + 3*x**3/10", "cos(omega*t)", "0.3", "0.6", {"omega": "1.7"})
+BETWEEN = si.ImpactOscillator("0.3*xdot", "cos(t)", "-0.2", "0.3", upper="0.2")  # chatters at both walls
 BENT = si.ImpactOscillator("x", "cos(2*t)", "0.3", "-0.8*v/sqrt(1 + v**2)")
+BETWEEN_SEVERAL = si.linear("2.8", "-0.5", "0.8", damping="0.05", amplitude=4, upper="0.5")  # four attractors
 ROWS = {
     "orbits": orbits_orbits, "limits": limits, "D G": derivatives, "rebounds": rebounds,
     "batches": lanes, "grazes": grazes, "basins": basin_pixels_row, "tangencies": tangencies.row,
@@ -144,6 +146,16 @@ def branch_of_rho():
     return "flights.impact_map.rebound", lambda true: lambda osc, u: np.where(u < -0.5, -0.8 * u, true(osc, u))
 
 
+def upper_states_below():
+    """States at an upper wall are flown from the lower one, as fast."""
+    return "dynamics.settling.signed_iterate", lambda true: lambda osc, tau, v, *more: true(osc, tau, np.abs(v), *more)
+
+
+def upper_lift_offs_below():
+    """The mass lifts off an upper wall where it would lift off the lower one."""
+    return "dynamics.basins_of_attraction.lift_offs_of_walls", lambda true: lambda osc: true(osc)[:1] * 2
+
+
 def lost_point():
     wrong = lambda true: lambda osc: TangencyPoints(true(osc)[1:])  # noqa: E731
     return "bench.selftest.tangencies.tangency_points", wrong
@@ -168,6 +180,12 @@ FAULTS = {
     "sign in D G": (sign_in_the_derivative(), "D G", CHATTERS),
     "slope of rho": (slope_of_rho(), "D G", BENT),
     "branch of rho": (branch_of_rho(), "rebounds", BENT),
+    "lift-off late, between walls": (lift_off(1e-6), "orbits", BETWEEN),
+    "rest of a chatter, between walls": (rest_of_chatter(), "limits", BETWEEN),
+    "more periods, between walls": (more_periods(), "basins", BETWEEN),
+    "upper states below": (upper_states_below(), "basins", BETWEEN_SEVERAL),
+    "upper lift-offs below": (upper_lift_offs_below(), "basins", BETWEEN),
+    "sign in D G, between walls": (sign_in_the_derivative(), "D G", BETWEEN),
     "lost tangency point": (lost_point(), "tangencies", CHATTERS),
 }
 

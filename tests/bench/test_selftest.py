@@ -36,6 +36,8 @@ MODELS = {
     "no rebound": si.linear("2.8", "0.1", 0),
     "no rebound, on a table": si.models.luck_mehta(G="3.8", restitution=0),
     "no rebound, Duffing": DUFFING.replace(clearance="-0.3", restitution=0),
+    "between walls": si.linear("2.8", "-0.5", "0.8", damping="0.05", amplitude=4, upper=("0.7", "0.6")),
+    "between walls, Duffing": DUFFING.replace(clearance="-0.5", upper="0.3", upper_restitution="0.4"),
     "no graze": si.ImpactOscillator("sqrt(4 + x)", "sin(t)**2/(2 + cos(t))", 0, "1/2"),
 }
 

@@ -35,9 +35,30 @@ def test_no_state_is_wrong() -> None:
 
 
 def test_a_wrong_impact_is_seen() -> None:
-    found = random_states._errors("linear", 2.0, 0.0, 1.0, 0.5, [0.0, 1.2, 0.7])
-    assert found[2] == 1
-    assert random_states._errors("linear", 2.0, 0.0, 1.0, 0.5, [3.0, np.inf, np.nan])[2] == 1
+    model = random_states.Model("linear", 2.0, 0.0)
+    assert random_states._errors(model, 1.0, 0.5, [0.0, 1.2, 0.7, 0])[2] == 1
+    assert random_states._errors(model, 1.0, 0.5, [3.0, np.inf, np.nan, 0])[2] == 1
+
+
+def test_no_state_between_walls_is_wrong() -> None:
+    with ThreadPoolExecutor(1) as pool:
+        rows = random_states.check(300, 7, pool, between_walls=True)
+    assert {row.kind.split()[1] for row in rows} == set(random_states.WALL_REGIMES)
+    for row in rows:
+        assert row.wrong == row.unresolved == 0
+        assert max(row.time_error, row.velocity_error) < 1, row
+
+
+def test_an_impact_at_the_wrong_wall_is_seen() -> None:
+    model = random_states.Model("linear", 2.0, 0.0, 0.3)
+    osc = model.oscillator()
+    step = osc.impact_map(1.0, 0.9)
+    answer = [float(part) for part in (step.status, step.flight_time, step.v, step.wall)]
+    assert answer[3] == 1
+    assert random_states._errors(model, 1.0, 0.9, answer)[2] == 0
+    assert random_states._errors(model, 1.0, 0.9, [*answer[:3], 0.0])[2] == 1
+    alone = osc.one_wall().impact_map(1.0, 0.9)  # the flight through the upper wall
+    assert random_states._errors(model, 1.0, 0.9, [0.0, float(alone.flight_time), float(alone.v), 0.0])[2] == 1
 
 
 @pytest.mark.slow

@@ -15,9 +15,9 @@ MODEL_ONLY = {
 }  # fmt: skip
 """Methods of the model as it is written."""
 TAKEN = {
-    "acceleration", "bifurcation", "branch", "chatter_limit", "derivative", "event_curve", "first_hit", "impact_map",
-    "inverse_map", "iterate", "launch", "lyapunov", "orbit", "periodic", "release", "to_toml", "ImpactSurface", "Scene",
-    "grown_gamma", "tangency_points", "threshold", "classify", "transitions",
+    "acceleration", "basins", "bifurcation", "branch", "chatter_limit", "derivative", "event_curve", "first_hit",
+    "impact_map", "inverse_map", "iterate", "launch", "lyapunov", "orbit", "periodic", "release", "selftest", "to_toml",
+    "ImpactSurface", "Scene", "grown_gamma", "tangency_points", "threshold", "classify", "transitions",
 }  # fmt: skip
 """What takes two walls."""
 

@@ -34,6 +34,7 @@ BENT = si.ImpactOscillator("x", "cos(2*t)", "0.3", "-0.5*v + v**3/10")
 CLOSED = si.linear(4, 0, "1/2")
 PARAMETRIC = si.ImpactOscillator("(1 + 0.3*cos(2*t))*x + 0.1*xdot + 0.2*x**3", "cos(t)", "0.2", "0.8")
 PLASTIC = si.linear("2.8", "0.1", 0)
+PAIR = si.linear("2.8", "-0.5", "0.8", upper=("0.5", "0.7"))
 CLOCKLESS = si.ImpactOscillator("x - (1 - x**2)*xdot", "0", "-1.5", "0.8")
 
 
@@ -80,7 +81,8 @@ CALLS = {
     "ImpactOscillator.impact_map": (
         [lambda d: LINEAR.impact_map("1.2", "0.01", digits=d), lambda d: BENT.impact_map("0.3", "0.7", digits=d),
          lambda d: CUBIC.impact_map("1.2", "0.1", digits=d), lambda d: PARAMETRIC.impact_map("1.2", "0.1", digits=d),
-         lambda d: CLOCKLESS.impact_map("1.2", "0.1", digits=d), lambda d: PLASTIC.impact_map("1.2", "0.1", digits=d)],
+         lambda d: CLOCKLESS.impact_map("1.2", "0.1", digits=d), lambda d: PLASTIC.impact_map("1.2", "0.1", digits=d),
+         lambda d: PAIR.impact_map("1.2", ["1.5", "0.1"], digits=d, wall=["l", "u"])],
         (5, 20, 33),
     ),
     "ImpactOscillator.first_hit": ([lambda d: WAVES.first_hit(["0.1", "pi/3"], [0, "1e-30"], digits=d)], (15, 40, 70)),

@@ -8,7 +8,7 @@ from collections import deque
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from math import inf, isfinite
+from math import copysign, inf, isfinite
 
 import numpy as np
 
@@ -49,7 +49,7 @@ class FollowedSettings:
 
 FOLLOWED = FollowedSettings()
 State = tuple[float, float, float]
-"""tau within a period, v, and the periods before."""
+"""tau within a period, v, which is < 0 or -0.0 at an upper wall, and the periods before."""
 
 
 @dataclass(frozen=True)
@@ -99,8 +99,8 @@ class Follower:
 
     def first(self, tau: float, v: float) -> Fate:
         """The first behaviour of an orbit: a chatter that completes counts."""
-        if not v and self.plain.push(tau) < 0:
-            return Fate("chatter", tau=tau)
+        if not v and self.plain.at(v).push(tau) < 0:
+            return Fate("chatter", tau=tau, v=v)
         begun, wait = tau, 0
         states = deque([(tau, v, 0.0)], FOLLOWED.periods + 1)
         for count in range(1, self.impacts + 1):
@@ -113,7 +113,7 @@ class Follower:
                 end = self.plain.chatter(tau, v, FOLLOWED.most)
                 if end.status == "complete":
                     elapsed = turns * self.period + tau + end.time - begun
-                    return Fate("chatter", 0, 0, tau + end.time, 0.0, count, elapsed)
+                    return Fate("chatter", 0, 0, tau + end.time, copysign(0.0, end.v), count, elapsed)
                 wait = end.impacts
             if count % FOLLOWED.every == 0 and (closed := self._closed(states)):
                 return Fate("orbit", *self._fewest(tau, v, closed), tau, v, count)
@@ -130,10 +130,11 @@ class Follower:
         return HIT
 
     def _slow(self, tau: float, v: float) -> bool:
-        if v > FOLLOWED.slow * self.fast or not self.plain.slope < 1:
+        here = self.plain.at(v)
+        if abs(v) > FOLLOWED.slow * self.fast or not here.slope < 1:
             return False
-        a = self.plain.push(tau)
-        return a < 0 and 2 * v / (-a * (1 - self.plain.slope)) < FOLLOWED.short * self.period
+        a = here.push(tau)
+        return a < 0 and 2 * abs(v) / (-a * (1 - here.slope)) < FOLLOWED.short * self.period
 
     def _closed(self, states: deque[State]) -> tuple[int, int] | None:
         """(n, k) of the last states, where the last one is near the one n impacts before it."""
@@ -161,20 +162,20 @@ class Follower:
         """The motion for ever: after a chatter that completes the mass rests and lifts off, again and again."""
         if fate.kind != "chatter":
             return fate
-        phase = self.plain.next_lift_off(fate.tau)
-        if phase < 0:
-            return Fate("rest", impacts=fate.impacts)
-        path, times = [phase], list[float]()
+        path, times, after = list[tuple[int, float]](), list[float](), fate
         while True:
-            after, time = _after_lift_off(self, path[-1])
+            phase = self.plain.at(after.v).next_lift_off(after.tau)
+            if phase < 0:
+                return Fate("rest", v=after.v, impacts=fate.impacts)
+            lifted = phase, copysign(1.0, after.v)
+            if lifted in path:
+                at = path.index(lifted)
+                return Fate("chatter for ever", 0, round(sum(times[at:]) / self.period), impacts=fate.impacts)
+            path.append(lifted)
+            after, time = _after_lift_off(self, *lifted)
             if after.kind != "chatter":
                 return after
             times.append(time)
-            phase = self.plain.next_lift_off(after.tau)
-            if phase in path:
-                at = path.index(phase)
-                return Fate("chatter for ever", 0, round(sum(times[at:]) / self.period), impacts=fate.impacts)
-            path.append(phase)
 
     def separates(self, state: tuple[float, float], distance: float, impacts: int) -> bool:
         """Whether an orbit and a neighbour part within so many impacts."""
@@ -192,16 +193,22 @@ class Follower:
 
 
 @lru_cache(maxsize=64)
-def _after_lift_off(follower: Follower, index: int) -> tuple[Fate, float]:
-    """The behaviour after a lift-off, and the time to the next one where a chatter completes."""
-    lifted = follower.plain.lift_offs[index]
-    hit = follower.plain.lifted(lifted, follower.horizon)
+def _after_lift_off(follower: Follower, index: int, side: float) -> tuple[Fate, float]:
+    """The behaviour after a lift-off, and the time to the next one where a chatter completes.
+
+    Parameters
+    ----------
+    side : of the wall, -1 for the upper one.
+    """
+    lifted = follower.plain.at(side).lift_offs[index]
+    hit = follower.plain.lifted(lifted, follower.horizon, copysign(0.0, side))
     if not follower.plain.goes_on(hit):
         return Fate("no impact" if hit.status == MISS else "undecided"), inf
     fate = follower.first(lifted + hit.time, hit.v)
     if fate.kind != "chatter" or not isfinite(fate.tau):
         return fate, inf
-    rest = follower.plain.lift_offs[follower.plain.next_lift_off(fate.tau)] - fate.tau
+    there = follower.plain.at(fate.v)
+    rest = there.lift_offs[there.next_lift_off(fate.tau)] - fate.tau if there.lift_offs else inf
     return fate, hit.time + fate.elapsed + rest % follower.period
 
 
@@ -283,7 +290,7 @@ def _agrees(follower: Follower, answer: LongRun, first: bool, fate: Fate) -> boo
         return last.kind == "no impact"
     if answer.kind in UNSETTLED:  # after a chatter
         return last.kind == "unsettled"
-    return answer.kind == last.kind == "rest"
+    return answer.kind == last.kind == "rest" and answer.word in ("", "lu"[copysign(1.0, last.v) < 0])
 
 
 def _near(follower: Follower, answer: LongRun, fate: Fate) -> bool:

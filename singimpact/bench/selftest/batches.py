@@ -4,7 +4,7 @@ Truth: fixed steps of order 8, one state at a time, with rho evaluated by Python
 them too. Shared with the package: f, g and rho as expression trees.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -50,6 +50,8 @@ def lanes(flown: Flown, plain: PlainOrbits) -> Row:
     compile_entries(flown.osc)
     for impacts in BATCHES.impacts:
         ends = flown.osc.iterate(tau, v, impacts)
+        if ends.wall is not None:
+            ends = replace(ends, v=np.where(ends.wall, -ends.v, ends.v))
         tally.restart()
         for at in range(tau.size):
             if tally.late:
@@ -79,7 +81,7 @@ def _lane(plain: PlainOrbits, state: tuple[float, float], ends: Any, lane: tuple
             tally.leave("rounding decides a flight")
             return
         late += BATCHES.wrong * true[0] + 4 * EPSILON * (abs(state[0]) + true[0])
-        fast += BATCHES.wrong * true[1] + LEAST
+        fast += BATCHES.wrong * abs(true[1]) + LEAST
         if status != Status.hit:
             tally.judge(np.inf, call)
             return

@@ -63,14 +63,14 @@ def _starts(flown: Flown) -> list[int]:
 def _orbit(flown: Flown, plain: PlainOrbits, at: int, tally: Tally) -> None:
     orbit = flown.osc.orbit(flown.tau[at], flown.v[at], ORBITS.impacts)
     call = f"{flown.call(at, 'orbit').split(', horizon')[0]}), event "
-    tau, v, kind = orbit.tau.tolist(), orbit.v.tolist(), orbit.kind.tolist()
+    tau, v, kind = orbit.tau.tolist(), orbit.speeds.tolist(), orbit.kind.tolist()
     for index in range(1, len(tau)):
         if tally.late:
             return
         before, after = (tau[index - 1], v[index - 1]), (tau[index], v[index])
         state = f"{call}{index} ({kind[index]}): "
         if kind[index] == "release":
-            _lift_off(plain, before[0], after[0], state, tally)
+            _lift_off(plain.at(after[1]), before[0], after[0], state, tally)
         elif kind[index] == "complete":
             _end_of_chatter(plain, before, after[0], state, tally)
         elif kind[index] == "graze":
@@ -87,7 +87,7 @@ def _impact(
     passed = after[0] - before[0]
     horizon = max(plain.horizon, ORBITS.longer * passed)
     rest = before[1] == 0
-    hit = plain.lifted(before[0], horizon) if rest else plain.impact(*before, horizon)
+    hit = plain.lifted(before[0], horizon, before[1]) if rest else plain.impact(*before, horizon)
     state += f"tau {after[0]!r}, v {after[1]!r}, truth {before[0] + hit.time!r}, {hit.v!r}"
     if hit.status == UNDECIDED:
         tally.leave("steps do not settle")
@@ -96,7 +96,7 @@ def _impact(
         tally.judge(np.inf, state)
         return
     late = ORBITS.wrong * hit.time + 4 * EPSILON * (abs(after[0]) + abs(before[0]))
-    fast = ORBITS.wrong * hit.v + LEAST
+    fast = ORBITS.wrong * abs(hit.v) + LEAST
     ratio = _ratio(hit, passed, after[1], (late, fast))
     if not ratio <= 1 and not rest:
         more = plain.spread(*before)
@@ -149,13 +149,13 @@ def _last(
 ) -> None:
     """The motion after the last event: no impact, or rest for ever."""
     if phase[0] == "no_return":
-        hit = plain.impact(*last) if last[1] > 0 else plain.lifted(last[0])
+        hit = plain.impact(*last) if last[1] else plain.lifted(last[0], v=last[1])
         if hit.status == UNDECIDED:
             tally.leave("steps do not settle")
         else:
             tally.judge(np.inf if hit.status == HIT else 0.0, state + f"no return, truth {hit.time!r}")
     elif phase[0] == "sticking" and plain.period is not None:
-        pushes = plain.grid[1]
+        pushes = plain.at(last[1]).grid[1]
         noise = ORBITS.rounding * EPSILON * float(np.max(np.abs(pushes)))
         tally.judge(0.0 if float(np.max(pushes)) <= noise else np.inf, state + "rest for ever, a_c is positive")
     else:
@@ -165,7 +165,7 @@ def _last(
 @against_plain_orbits(LIMIT_NAME)
 def limits(flown: Flown, plain: PlainOrbits) -> Row:
     """`osc.chatter_limit` of slow states."""
-    if not plain.slope < 1:
+    if not any(wall.slope < 1 for wall in (plain, plain.above) if wall is not None):
         return Row(LIMIT_NAME, note="does not apply: rho is not smooth at rest, or has slope -1: no geometric series")
     tally = Tally(LIMIT_NAME)
     pressed = plain.pushes(flown.tau) < 0

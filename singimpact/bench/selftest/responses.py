@@ -5,6 +5,7 @@ evaluated by Python at the velocity of the hit. Shared with the package: f, g an
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -59,7 +60,8 @@ def round_trip(flown: Flown) -> Row:
 
 def _judge(flown: Flown, places: Array, tally: Tally) -> None:
     osc, step, horizon = flown.osc, flown.step, flown.scales.horizon
-    back = osc.inverse_map(step.tau[places], step.v[places], horizon=2 * horizon)
+    walls = {} if osc.upper is None else {"wall": step.wall[places]}
+    back: Any = osc.inverse_map(step.tau[places], step.v[places], horizon=2 * horizon, **walls)
     (by_tau, by_v), trip = allowed(flown, places)
     # where rho is no number inverse_map may take another of the velocities that rebound alike
     with np.errstate(invalid="ignore"):
@@ -76,7 +78,7 @@ def _judge(flown: Flown, places: Array, tally: Tally) -> None:
             tally.leave("rounding explains any difference")
         elif other_branch[at]:
             tally.leave("another velocity rebounds alike")
-        elif status != Status.hit:
+        elif status != Status.hit or (walls and back.wall[at]):
             tally.judge(np.inf, state)
         else:
             tally.judge(max(abs(back.tau[at] - tau) / by_tau[at], abs(back.v[at] - v) / by_v[at]), state)
@@ -142,7 +144,7 @@ def _matrix(flown: Flown, plain: PlainOrbits, at: int, matrix: Array, tally: Tal
         tally.leave("a flight beside it does not return")
         return
     true, error = quotients
-    sizes = np.outer([hit.time, hit.v], [plain.rate, 1 / v]) + np.abs(true)
+    sizes = np.outer([hit.time, abs(hit.v)], [plain.rate, 1 / v]) + np.abs(true)
     if not (error <= RESPONSES.bent * sizes).all():
         tally.leave("the map bends within a difference")
         return
@@ -157,12 +159,12 @@ def rebounds(flown: Flown, plain: PlainOrbits) -> Row:
     tally, step = Tally(REBOUND), flown.step
     for at in np.flatnonzero((step.status == Status.hit) | (step.status == Status.no_rebound)).tolist():
         velocity, v = float(step.velocity[at]), float(step.v[at])
-        true = plain.rebound(velocity)
+        true = abs(plain.rebound(velocity))
         state = f"{flown.call(at)}: velocity {velocity!r}, after it {v!r}, rho is {true!r}"
         if step.status[at] == Status.no_rebound:
             tally.judge(0.0 if not true > 0 else np.inf, state)
             continue
-        beside = [plain.rebound(velocity * (1 + s * 2.0**-44)) for s in (-1, 1)]
+        beside = [abs(plain.rebound(velocity * (1 + s * 2.0**-44))) for s in (-1, 1)]
         # 2^-44 is 256 roundings
         near = LEAST + RESPONSES.rebound * true + RESPONSES.rounding / 256 * max(abs(end - true) for end in beside)
         passed = flown.tau[at] + step.flight_time[at]

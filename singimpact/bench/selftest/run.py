@@ -7,7 +7,7 @@ from singimpact.bench.selftest import basin_pixels, batches, followed_orbits, re
 from singimpact.bench.selftest.draws import Flown, flown
 from singimpact.bench.selftest.rows import Row, SelfTest
 from singimpact.impact_oscillator import ImpactOscillator
-from singimpact.inputs import checked_keywords, refuse, whole
+from singimpact.inputs import checked_keywords, refuse, takes_two_walls, whole
 from singimpact.progress import ProgressLine
 
 COMPARED: dict[str, Callable[[Flown], Row]] = {
@@ -27,12 +27,13 @@ COMPARED: dict[str, Callable[[Flown], Row]] = {
 
 
 @checked_keywords
+@takes_two_walls
 def selftest(osc: ImpactOscillator, *, states: int = 1000, seed: int = 0) -> SelfTest:
     """Random states of a model, flown by the package and judged against independent computations.
 
     Parameters
     ----------
-    osc : the model.
+    osc : the model. With two walls the states are at the lower one, and orbits and basins go on from both.
     states : how many are drawn: phases over a period of g, or over [-10, 10]; velocities log-uniform over ten decades.
     seed : which states; the same seed draws the same ones.
 

@@ -84,6 +84,8 @@ def _arbitrated(flown: Flown, at: int, motion: graded_steps.Motion, before: floa
     """The difference from the ball, or from finer steps where there is no ball; and whether one of these decides."""
     tau, v, horizon = float(flown.tau[at]), float(flown.v[at]), flown.scales.horizon
     try:
+        if flown.osc.upper is not None:
+            raise Refused("balls know one wall")
         ball = enclosed_flight.first_hit(flown.osc, tau, v, horizon)
     except (Refused, ArithmeticError, TypeError):
         true = graded_steps.first_hit(motion, tau, v, horizon, graded_steps.FINENESS.first * TRUTHS.finer)
@@ -121,6 +123,8 @@ def _some(flown: Flown, count: int) -> list[int]:
 def balls(flown: Flown) -> Row:
     """Flights enclosed in balls: the error is within `time_error` and `velocity_error`."""
     tally = Tally("within .error of balls")
+    if flown.osc.upper is not None:
+        return Row(tally.compared, note="does not apply: balls know one wall")
     for at in tally.in_time(_some(flown, TRUTHS.balls)):
         try:
             ball = enclosed_flight.first_hit(flown.osc, float(flown.tau[at]), float(flown.v[at]), flown.scales.horizon)

@@ -1,7 +1,7 @@
 """Impacts in balls of 60 digits from `bench.truth`, with their derivatives, and the sequences of flights."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 from math import pi
 from typing import Any
@@ -14,7 +14,7 @@ from singimpact.bench.stress.judging import STEP, Function, Sweep, Trial
 from singimpact.bench.stress.launches import PLACES, Launch, SteepLaunch, both
 from singimpact.bench.truth import enclosed_flight
 from singimpact.bench.truth.enclosed_flight import EnclosureSettings
-from singimpact.bench.truth.first_hit import first_hit
+from singimpact.bench.truth.first_hit import first_hit, first_of_both
 from singimpact.flights.inverse_map import backwards
 from singimpact.status import Status
 
@@ -72,7 +72,7 @@ def _flown(launch: SteepLaunch, tau: Pair, v: Pair, sign: int) -> Pair:
 
 @dataclass(frozen=True)
 class Landing:
-    """The next impact of a state in balls: flight time, velocity; their derivatives by (tau, v)."""
+    """The next impact of a state in balls: flight time, velocity up from its wall; their derivatives by (tau, v)."""
 
     time: Any
     velocity: Any
@@ -92,7 +92,10 @@ def landing(launch: Launch, tau: Any, v: Any, sign: int = 1) -> Landing | int:
     if v == 0 and not motion.at(0)[2] > 0:
         return int(Status.sticks)
     try:
-        hit = first_hit(motion, float(v), launch.horizon)
+        if launch.upper is None:
+            hit = first_hit(motion, float(v), launch.horizon)
+        else:
+            hit = first_of_both(motion, float(v), launch.horizon, launch.gap)
     except ArithmeticError:
         return int(Status.graze)
     if hit is None:
@@ -143,7 +146,7 @@ def _stepped(launch: Launch, step: Any) -> Trial:
     if isinstance(true, int) or step.status != Status.hit:
         return Trial(str(launch), status=_status(step.status, true if isinstance(true, int) else int(Status.hit)))
     r, late = flint.arb(launch.restitution), true.moved(sizes(launch, true.time))
-    values = [true.time + launch.tau, -r * true.velocity]
+    values = [true.time + launch.tau, r * abs(true.velocity)]
     return Trial(str(launch), [float(step.tau), float(step.v)], values, [late[0], r * late[1]])
 
 
@@ -155,7 +158,7 @@ def _inverse(launch: Launch) -> Trial:
         return Trial(str(launch), status=_status(before.status, true if isinstance(true, int) else int(Status.hit)))
     size, speed = sizes(launch, true.time)
     late = true.moved((size, speed))
-    return Trial(str(launch), [float(before.tau), float(before.v)], [launch.tau - true.time, -true.velocity], late)
+    return Trial(str(launch), [float(before.tau), float(before.v)], [launch.tau - true.time, abs(true.velocity)], late)
 
 
 def _flight(launch: Launch) -> Trial | None:
@@ -207,7 +210,7 @@ def _matrix(launch: Launch, by_tau: Any, by_v: Any) -> tuple[list[Any], Any] | i
     true = landing(launch, flint.arb(launch.tau) + by_tau, flint.arb(launch.v) + by_v)
     if isinstance(true, int):
         return true
-    r, ((a, b), (c, d)) = -flint.arb(launch.restitution), true.by_state
+    r, ((a, b), (c, d)) = flint.arb(launch.restitution) * (1 if true.velocity > 0 else -1), true.by_state
     return [1 + a, b, r * c, r * d], true.time
 
 
@@ -234,7 +237,8 @@ def _chained(launch: Launch, tau: Any, v: Any) -> Trial | None:
         rounded = max(float(rounded[0]), float(true.time)), rounded[1]
         (a, b), (c, d) = true.by_state
         late = abs(1 + a) * rounded[0] + abs(b) * rounded[1], r * (abs(c) * rounded[0] + abs(d) * rounded[1])
-        at = at[0] + true.time, -r * true.velocity
+        at = at[0] + true.time, r * abs(true.velocity)
+        launch = replace(launch, wall=launch.wall ^ bool(true.velocity > 0))
         rounded = late[0] + abs(at[0]), late[1] + abs(at[1])
     return Trial(str(launch), [float(tau), float(v)], list(at), list(rounded))
 
@@ -250,9 +254,9 @@ FUNCTIONS = (
     ),
     Function(
         "flight",
-        _sweeps(_flight, ("r -> 0", "r -> 1", "steep layers", "t in f")),
+        _sweeps(_flight, ("r -> 0", "r -> 1", "steep layers", "t in f", "two walls")),
         BALLS,
-        "a flight knows no r; balls of steep flights give the hit alone",
+        "a flight knows no r; balls of steep flights give the hit alone; it takes one wall",
     ),
     Function("derivative", _sweeps(_derivative), BALLS + ", differences", ""),
     Function("inverse_map", _sweeps(_inverse), BALLS + ", backwards", ""),

@@ -2,17 +2,19 @@
 
 Places: v -> 0 pressed and free, short flights, near resonance, r -> 0 and 1, next to zeros of a and of a', next to the
 outline P (flights that graze) and to Z (launches that nearly rest), late phases, many periods without impact, forces
-that vary within 1/K of a state, K towards 1e4.
+that vary within 1/K of a state, K towards 1e4; two walls from 1e-12 to 1e6 apart, and grazes of the other one.
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import acos, pi
 from typing import Any
 
+import flint
+
 from singimpact.algebra.precision import balls_at
 from singimpact.bench.stress.judging import powers
-from singimpact.bench.truth.first_hit import Cubic, Linear, first_hit
+from singimpact.bench.truth.first_hit import Above, Cubic, Linear, first_hit
 from singimpact.impact_oscillator import ImpactOscillator, linear
 
 CUBIC = "x + xdot/10 + 3*x**3/10"
@@ -25,7 +27,7 @@ HORIZON = {
 
 @dataclass(frozen=True)
 class Launch:
-    """A model and a state, all exact doubles."""
+    """A model and a state, all exact doubles; with a second wall at `upper` the state is at the wall 0 or 1."""
 
     family: str
     omega: float = 2.8
@@ -33,19 +35,28 @@ class Launch:
     restitution: float = 0.8
     tau: float = 0.9
     v: float = 0.5
+    upper: float | None = None
+    wall: int = 0
 
     @property
     def model(self) -> ImpactOscillator:
         """The oscillator."""
         if self.family == "linear":
-            return linear(self.omega, self.clearance, self.restitution)
-        return ImpactOscillator(CUBIC, "cos(omega*t)", self.clearance, self.restitution, {"omega": self.omega})
+            return linear(self.omega, self.clearance, self.restitution, upper=self.upper)
+        walls = self.clearance, self.restitution
+        return ImpactOscillator(CUBIC, "cos(omega*t)", *walls, {"omega": self.omega}, upper=self.upper)
 
     def motion(self, tau: Any, v: Any, sign: int = 1) -> Linear | Cubic:
-        """The flight from another state, in balls; sign -1: backwards."""
+        """The flight from another state, in balls, up from its wall; sign -1: backwards."""
+        place, push = (-self.upper, -1) if self.wall and self.upper is not None else (self.clearance, 1)
         if self.family == "linear":
-            return Linear(self.omega, self.clearance, tau, v)
-        return Cubic(self.omega, self.clearance, tau, v, sign)
+            return Linear(self.omega, place, tau, v, push)
+        return Cubic(self.omega, place, tau, v, sign, push)
+
+    @property
+    def gap(self) -> Any:
+        """The distance of both walls, a ball."""
+        return flint.arb(self.upper) - flint.arb(self.clearance)
 
     @property
     def horizon(self) -> float:
@@ -60,7 +71,8 @@ class Launch:
         return BITS + (int(4 * max(-log2(self.v), 0)) if self.v else 0)
 
     def __str__(self) -> str:
-        names = ("omega", "clearance", "restitution", "tau", "v")
+        walls = ("clearance",) if self.upper is None else ("clearance", "upper", "wall")
+        names = ("omega", *walls, "restitution", "tau", "v")
         return f"{self.family}, " + ", ".join(f"{name} = {getattr(self, name)!r}" for name in names)
 
 
@@ -149,6 +161,25 @@ def _grazing(family: str, points: int) -> Iterator[Launch]:
                 yield Launch(family, clearance=-0.4, tau=touch - float(hit[0]), v=v)
 
 
+def _between(family: str, points: int) -> Iterator[Launch]:
+    """Launches that reach the other wall, just so and not; slow ones; backward flights from states beside a graze."""
+    for gap in powers(points, 12, -6 if family == "linear" else -1):
+        for share in (0.3, 1.0, 3.0):
+            yield Launch(family, v=share * max(gap, (2 * gap) ** 0.5), upper=gap)
+    for v in powers(points, 150):
+        yield Launch(family, v=v, upper=0.5)
+    for touch in (0.8, 1.3):
+        at = Launch(family, clearance=-0.4, upper=0.6, wall=1)
+        with balls_at(BITS):
+            hit = first_hit(Above(at.motion(-touch, 0.0, -1), at.gap), 0.0, 60.0)
+        if hit is None:
+            continue
+        for off in powers(points, 13):
+            for side in (1, -1):
+                v = -float(hit[1]) * (1 + side * off)
+                yield replace(at, wall=0, tau=touch - float(hit[0]), v=v)
+
+
 def _resting(family: str, points: int) -> Iterator[Launch]:
     """Launches with a > 0 whose velocity runs to 0: the flight is long, Z is where it left at rest."""
     for v in (0.0, *powers(points, 16)):
@@ -210,6 +241,7 @@ PLACES: dict[str, Launches] = {
     "long flights": _long,
     "steep layers": _steep,
     "t in f": _parametric,
+    "two walls": _between,
 }
 
 

@@ -8,12 +8,12 @@ import flint
 from singimpact.algebra.precision import bits_of_balls
 
 
-def first_hit(motion: "Linear | Cubic", v: float, horizon: float) -> tuple[Any, Any] | None:
+def first_hit(motion: "Linear | Cubic | Above", v: float, horizon: float) -> tuple[Any, Any] | None:
     """Time and velocity of the first hit; None when there is none before the horizon.
 
     Parameters
     ----------
-    motion : `Linear` or `Cubic`, launched with velocity v >= 0, a > 0 for v = 0.
+    motion : `Linear` or `Cubic`, launched with velocity v >= 0, a > 0 for v = 0; or its distance from another wall.
 
     Raises
     ------
@@ -27,9 +27,10 @@ def first_hit(motion: "Linear | Cubic", v: float, horizon: float) -> tuple[Any, 
     ...     print(first_hit(Linear(2.0, 0.0, 1.0, 0.5), 0.5, 100.0)[0].str(20, radius=False))
     1.1115158754205710871
     """
-    a = float(motion.at(0)[2])
-    begin = _without_root(v, a, motion)
-    width = min(begin, 0.25)
+    begin, width = 0.0, min(horizon, 0.25)
+    if not isinstance(motion, Above):
+        begin = _without_root(v, float(motion.at(0)[2]), motion)
+        width = min(begin, 0.25)
     while begin < horizon:
         width = min(width, 0.5)
         half = width / 2
@@ -44,6 +45,13 @@ def first_hit(motion: "Linear | Cubic", v: float, horizon: float) -> tuple[Any, 
         if width < 1e-14 * begin:
             raise ArithmeticError("a touch")
     return None
+
+
+def first_of_both(motion: "Linear | Cubic", v: float, horizon: float, gap: Any) -> tuple[Any, Any] | None:
+    """Time and velocity of the first hit of the wall below, or of one above at a distance `gap`, where x' > 0."""
+    below = first_hit(motion, v, horizon)
+    above = first_hit(Above(motion, gap), v, horizon if below is None else float(below[0]))
+    return below if above is None else (above[0], -above[1])
 
 
 def _without_root(v: float, a: float, motion: "Linear | Cubic") -> float:
@@ -61,7 +69,7 @@ def _lowest(z: float, u: float, e: float, half: float) -> float:
     return min(ends, z - u * u / (2 * e)) if e > 0 and abs(u) < e * half else ends
 
 
-def _root(motion: "Linear | Cubic", low: float, high: float) -> tuple[Any, Any]:
+def _root(motion: "Linear | Cubic | Above", low: float, high: float) -> tuple[Any, Any]:
     """The root between two times, where x' < 0: bisected to where Newton's method converges, then to all digits."""
     for _ in range(20):
         middle = (low + high) / 2
@@ -84,8 +92,26 @@ def _root(motion: "Linear | Cubic", low: float, high: float) -> tuple[Any, Any]:
 DIGITS = 60
 
 
+class Above:
+    """A motion seen from a wall above: its distance from there, whose velocity and acceleration point down."""
+
+    def __init__(self, motion: "Linear | Cubic", gap: Any) -> None:
+        self.motion, self.gap = motion, gap
+
+    def at(self, t: Any) -> tuple[Any, Any, Any]:
+        """Distance and its derivatives at a time after the launch."""
+        z, u, e = self.motion.at(t)
+        return self.gap - z, -u, -e
+
+    def third(self, z: float, u: float, width: float) -> float:
+        """A bound of |x'''| within `width` of a place."""
+        return self.motion.third(float(self.gap) - z, -u, width)
+
+
 class Linear:
     """The flight from (c, v) at tau, by sums and differences of frequencies: omega = 1 is an ordinary point.
+
+    The forcing is `push` cos omega t.
 
     Examples
     --------
@@ -94,10 +120,10 @@ class Linear:
     (0.0, 1.0, 1.0)
     """
 
-    def __init__(self, omega: float, clearance: float, tau: float, v: float) -> None:
+    def __init__(self, omega: float, clearance: float, tau: Any, v: Any, push: int = 1) -> None:
         arb = flint.arb
         self.omega, self.c, self.v = arb(omega), arb(clearance), arb(v)
-        self.sin, self.cos = (self.omega * arb(tau)).sin_cos()
+        self.sin, self.cos = (push * wave for wave in (self.omega * arb(tau)).sin_cos())
         self.p, self.q = (1 + self.omega) / 2, (1 - self.omega) / 2
 
     def at(self, t: Any) -> tuple[Any, Any, Any]:
@@ -133,6 +159,8 @@ class Linear:
 class Cubic:
     """The flight of x'' + sign x'/10 + x + 3 x^3/10 = cos omega t, in Taylor steps whose last terms are below 10^-60.
 
+    The forcing is `push` cos omega t.
+
     Examples
     --------
     >>> from singimpact.algebra.precision import balls_at
@@ -143,17 +171,17 @@ class Cubic:
 
     order = 72
 
-    def __init__(self, omega: float, clearance: float, tau: Any, v: Any, sign: int = 1) -> None:
+    def __init__(self, omega: float, clearance: float, tau: Any, v: Any, sign: int = 1, push: int = 1) -> None:
         arb = flint.arb
         self.omega, self.c, self.start = arb(omega), arb(clearance), (arb(tau), arb(v))
-        self.damping, self.cubic, self.sign = arb(sign) / 10, arb(3) / 10, sign
+        self.damping, self.cubic, self.sign, self.push = arb(sign) / 10, arb(3) / 10, sign, push
         self.steps: list[tuple[Any, Any, list[Any]]] = []
         self._extend(arb(0), self.c, arb(v))
 
     def _extend(self, t: Any, x: Any, u: Any) -> None:
         X, square = [x, u], [x * x]
         sine, cosine = (self.omega * (self.start[0] + t)).sin_cos()
-        force, power = (cosine, -sine, -cosine, sine), self.omega / self.omega
+        force, power = (cosine, -sine, -cosine, sine), self.push * self.omega / self.omega
         for k in range(self.order - 1):
             cube = sum((square[i] * X[k - i] for i in range(k + 1)), 0 * x)
             pull = self.damping * (k + 1) * X[k + 1] + X[k] + self.cubic * cube
@@ -188,7 +216,7 @@ class Cubic:
         rows = []
         for moved in ((small, 0), (0, small * self.start[1])):
             tau, v = self.start[0] + moved[0], self.start[1] + moved[1]
-            other = Cubic(float(self.omega), float(self.c), tau, v, self.sign).at(t)
+            other = Cubic(float(self.omega), float(self.c), tau, v, self.sign, self.push).at(t)
             size = moved[0] + moved[1]
             rows.append(((other[0] - z) / size, (other[1] - u) / size))
         return rows[0], rows[1]

@@ -52,13 +52,19 @@ FINENESS = FinenessSettings()
 class Motion(NamedTuple):
     """A compiled acceleration, its parameters, the layers, rows (kind, centre, width, stiffness, spacing), and c.
 
-    A layer of kind EVERYWHERE adds 1/width to the rate of the motion in every state.
+    A layer of kind EVERYWHERE adds 1/width to the rate of the motion in every state. A second wall is at c + gap.
     """
 
     acceleration: Any
     parameters: Array
     layers: Array
     clearance: float
+    gap: float = inf
+
+    def flown(self, tau: float, v: float, horizon: float, fineness: float) -> Any:
+        """`flown` of this motion."""
+        run = compiled_kernel()["flown"]
+        return run(*self[:3], (self.clearance, self.gap), tau, v, horizon, fineness)
 
 
 class Hit(NamedTuple):
@@ -74,6 +80,8 @@ class Hit(NamedTuple):
 def first_hit(motion: Motion, tau: float, v: float, horizon: float, first: float = FINENESS.first) -> Hit:
     """The first hit of the flight from (tau, v), v > 0, alike at two finenesses; UNDECIDED where no two agree.
 
+    Its velocity is > 0 at a second wall.
+
     Parameters
     ----------
     first : fineness of the first of the flights.
@@ -85,10 +93,9 @@ def first_hit(motion: Motion, tau: float, v: float, horizon: float, first: float
     >>> round(first_hit(Motion(falling, np.array([2.0]), np.zeros((0, 5)), 0.0), 0.0, 3.0, 30.0).flight_time, 13)
     3.0
     """
-    run = compiled_kernel()["flown"]
     fineness, before, steps = first, None, 0
     for _ in range(FINENESS.halvings + 1):
-        status, time, velocity, crossed, count, top = run(*motion, tau, v, horizon, fineness)
+        status, time, velocity, crossed, count, top = motion.flown(tau, v, horizon, fineness)
         steps += count
         ended = (status, time, velocity, top)
         if before is not None and _agree(ended, before):
@@ -104,7 +111,7 @@ def _agree(one: tuple[int, float, float, float], other: tuple[int, float, float,
     if one[0] == MISS:
         return True
     off, time = abs(one[1] - other[1]), one[1]
-    return off <= FINENESS.most * time and (off <= FINENESS.time * time or off * -one[2] <= FINENESS.touch * one[3])
+    return off <= FINENESS.most * time and (off <= FINENESS.time * time or off * abs(one[2]) <= FINENESS.touch * one[3])
 
 
 @lru_cache(maxsize=1)
@@ -129,7 +136,7 @@ def _signature() -> Any:
     number: Any = numba.float64
     returned: Any = numba.types.Tuple((numba.int64, number, number, numba.boolean, numba.int64, number))
     called = numba.types.FunctionType(number(number, number, number, number[::1]))
-    return returned(called, number[::1], number[:, ::1], *[number] * 5)
+    return returned(called, number[::1], number[:, ::1], numba.types.UniTuple(number, 2), *[number] * 4)
 
 
 def compiled(acceleration: Acceleration) -> Any:
@@ -210,18 +217,27 @@ def increments(
 
 
 def bracketed_root(
-    acceleration: Any, parameters: Array, clearance: float, t: float, z: float, u: float, high: float, turning: bool
+    acceleration: Any,
+    parameters: Array,
+    clearance: float,
+    state: tuple[float, float, float],
+    high: float,
+    turning: bool,
+    gap: float,
 ) -> tuple[float, float, float]:
     """Where x - c falls to 0 inside a step, or where x' rises to 0 (`turning`), with x - c and x' there.
 
-    Each trial is a step of its own from the step's start: Newton's method, halving where it leaves the bracket.
+    With gap > 0 where x - c rises to it, or where x' falls to 0. Each trial is a step of its own from the state (t,
+    x - c, x') at the step's start: Newton's method, halving where it leaves the bracket.
     """
-    low, s = 0.0, 0.5 * high
+    t, z, u = state
+    low, s, side = 0.0, 0.5 * high, -1.0 if gap > 0 else 1.0
     for _ in range(100):
         dz, du = increments(acceleration, parameters, clearance, t, z, u, s)
-        value, slope = (z + dz, u + du)
+        value, slope = gap + side * (z + dz), side * (u + du)
         if turning:
-            value, slope = -(u + du), -acceleration(t + s, clearance + z + dz, u + du, parameters)
+            value = -side * (u + du)
+            slope = -side * acceleration(t + s, clearance + z + dz, u + du, parameters)
         if value > 0:
             low = s
         else:
@@ -239,7 +255,7 @@ def flown(
     acceleration: Any,
     parameters: Array,
     layers: Array,
-    clearance: float,
+    walls: tuple[float, float],
     tau: float,
     v: float,
     horizon: float,
@@ -247,7 +263,7 @@ def flown(
 ) -> tuple[int, float, float, bool, int, float]:
     """Status, time, velocity, whether a layer was crossed, steps, largest x - c of the flight at one fineness."""
     s, z, u, h, top, crossed = 0.0, 0.0, v, inf, 0.0, False
-    s_lost, z_lost, u_lost = 0.0, 0.0, 0.0
+    s_lost, z_lost, u_lost, (clearance, gap) = 0.0, 0.0, 0.0, walls
     for count in range(MOST_STEPS):
         t = tau + s
         e = acceleration(t, clearance + z, u, parameters)
@@ -256,15 +272,28 @@ def flown(
         dz, du = increments(acceleration, parameters, clearance, t, z, u, h)
         if not (isfinite(dz) and isfinite(du)):
             return UNDECIDED, s, u, crossed, count, top
-        end = h
+        end, state = h, (t, z, u)
+        if u > 0 and gap < inf:
+            highest = z + dz
+            if u + du < 0:
+                end, highest, _ = bracketed_root(acceleration, parameters, clearance, state, h, True, gap)
+                if abs(gap - highest) <= 1e-12 * gap:
+                    return UNDECIDED, s + end, 0.0, crossed, count, gap
+            if highest >= gap:
+                end, _, velocity = bracketed_root(acceleration, parameters, clearance, state, end, False, gap)
+                return HIT if s + end <= horizon else MISS, s + end, velocity, crossed, count, gap
+            end = h
         if u < 0 < u + du and z + dz > 0:
-            end, least, _ = bracketed_root(acceleration, parameters, clearance, t, z, u, h, True)
+            end, least, _ = bracketed_root(acceleration, parameters, clearance, state, h, True, 0.0)
             if abs(least) <= 1e-12 * top:
                 return UNDECIDED, s + end, 0.0, crossed, count, top
             dz = least - z if least < 0 else dz
         if z + dz <= 0:
-            end, _, velocity = bracketed_root(acceleration, parameters, clearance, t, z, u, end, False)
+            end, _, velocity = bracketed_root(acceleration, parameters, clearance, state, end, False, 0.0)
             return HIT if s + end <= horizon else MISS, s + end, velocity, crossed, count, top
+        if z + dz >= gap:
+            end, _, velocity = bracketed_root(acceleration, parameters, clearance, state, h, False, gap)
+            return HIT if s + end <= horizon else MISS, s + end, velocity, crossed, count, gap
         s, s_lost = added(s, s_lost, h)
         z, z_lost = added(z, z_lost, dz)
         u, u_lost = added(u, u_lost, du)

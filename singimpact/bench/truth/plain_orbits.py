@@ -7,7 +7,7 @@ of rebound, sums of chatter, zeros of a_c.
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from math import inf, isfinite, nan
+from math import copysign, inf, isfinite, nan
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -54,12 +54,13 @@ class Impact(NamedTuple):
 
 
 class Chatter(NamedTuple):
-    """`status` "complete", "lifts off" or "open"; the time from the start to the end, its error, impacts flown."""
+    """`status` "complete", "lifts off" or "open"; time from start to end, its error, impacts flown, the last v."""
 
     status: str
     time: float
     error: float
     impacts: int
+    v: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +71,9 @@ class PlainOrbits:
     ----------
     motion : the model as `graded_steps` flies it. rho : velocity after an impact.
     slope : -rho'(0); nan where rho is not smooth at rest, or loses nothing there. period : of g, or None.
-    rate : fastest rate of the model. horizon : of a flight.
+    rate : fastest rate of the model. horizon : of a flight. above : those of a second wall, in -x.
+
+    With two walls velocities are those of x: states of the upper wall have v < 0, or -0.0.
     """
 
     motion: Motion
@@ -79,6 +82,11 @@ class PlainOrbits:
     period: float | None
     rate: float
     horizon: float
+    above: "PlainOrbits | None" = None
+
+    def at(self, v: float) -> "PlainOrbits":
+        """The orbits of the wall of a state, in whose coordinates it is the lower one."""
+        return self.above if self.above is not None and copysign(1.0, v) < 0 else self
 
     def push(self, tau: float) -> float:
         """a_c(tau)."""
@@ -92,6 +100,8 @@ class PlainOrbits:
         """rho(velocity); nan where it is no velocity away from the obstacle."""
         if velocity == 0:
             return 0.0
+        if velocity > 0:
+            return nan if self.above is None else -self.above.rebound(-velocity)
         try:
             v = self.rho(velocity)
         except (ArithmeticError, ValueError):
@@ -105,7 +115,7 @@ class PlainOrbits:
 
     def goes_on(self, hit: Impact) -> bool:
         """Whether a flight ended in an impact with a velocity after it."""
-        return hit.status == HIT and (hit.v > 0 or self.plastic)
+        return hit.status == HIT and (abs(hit.v) > 0 or self.plastic)
 
     def fly(self, tau: float, v: float, quick: bool, horizon: float | None = None) -> Impact:
         """The first impact; of a mass at rest where a_c lifts it."""
@@ -116,15 +126,20 @@ class PlainOrbits:
     def impact(self, tau: float, v: float, horizon: float | None = None) -> Impact:
         """The first impact of a flight, alike at two finenesses."""
         until = self.horizon if horizon is None else horizon
-        hit = graded_steps.first_hit(self.motion, tau, v, until, SETTINGS.first)
-        return Impact(hit.status, hit.flight_time, hit.velocity, self.rebound(min(hit.velocity, 0.0)))
+        hit = graded_steps.first_hit(self.at(v).motion, tau, abs(v), until, SETTINGS.first)
+        return self._ended(v, hit.status, hit.flight_time, hit.velocity)
 
     def quick_impact(self, tau: float, v: float, horizon: float | None = None) -> Impact:
         """The first impact of a flight at one fineness."""
-        run = graded_steps.compiled_kernel()["flown"]
         until = self.horizon if horizon is None else horizon
-        status, time, velocity, *_ = run(*self.motion, tau, v, until, SETTINGS.quick)
-        return Impact(status, time, velocity, self.rebound(min(velocity, 0.0)))
+        return self._ended(v, *self.at(v).motion.flown(tau, abs(v), until, SETTINGS.quick)[:3])
+
+    def _ended(self, v: float, status: int, time: float, velocity: float) -> Impact:
+        """The end of a flight of the wall of v, whose velocity there is > 0 at the other wall."""
+        if self.above is None:
+            return Impact(status, time, velocity, self.rebound(min(velocity, 0.0)))
+        velocity *= copysign(1.0, v)
+        return Impact(status, time, velocity, self.rebound(velocity) if status == HIT else nan)
 
     def impacts(self, tau: float, v: float, count: int, quick: bool = False) -> tuple[float, float] | None:
         """Time and velocity after so many impacts; None where a flight does not return.
@@ -165,25 +180,26 @@ class PlainOrbits:
         What this sum E_n after n impacts leaves out is C v_n^2 + ..., so E_n + (E_n - E_(n-1)) r^2/(1 - r^2) is used,
         and the correction is its error.
         """
-        since, before, r = 0.0, nan, self.slope
+        since, before = 0.0, nan
         if self.plastic:
             time = self.impact(tau, v).time if v else 0.0
             status = "complete" if self.push(tau + time) < 0 else "lifts off"
             return Chatter(status if isfinite(time) else "open", time, 1e-11 * time, 1)
-        if not r < 1:
+        if not (self.slope < 1 or (self.above is not None and self.above.slope < 1)):
             return Chatter("open", nan, inf, 0)
         for count in range(most + 1):
-            a = self.push(tau + since)
+            here = self.at(v)
+            a, r = here.push(tau + since), here.slope
             if a >= 0 and count:
                 return Chatter("lifts off", since, graded_steps.FINENESS.most * since, count)
-            total = since + 2 * v / (-a * (1 - r)) if a < 0 else nan
+            total = since + 2 * abs(v) / (-a * (1 - r)) if a < 0 and r < 1 else nan
             correction = (total - before) * r * r / (1 - r * r)
             if abs(correction) <= SETTINGS.summed * total:
-                return Chatter("complete", total + correction, abs(correction) + 1e-11 * total, count)
-            before = total
+                return Chatter("complete", total + correction, abs(correction) + 1e-11 * total, count, v)
             hit = self.impact(tau + since, v)
-            if hit.status != HIT or not hit.v > 0:
+            if hit.status != HIT or not abs(hit.v) > 0:
                 break
+            before = total if hit.v * v > 0 else nan
             since, v = since + hit.time, hit.v
         return Chatter("open", nan, inf, most)
 
@@ -203,8 +219,11 @@ class PlainOrbits:
                 if any(end.status != HIT or not isfinite(end.v) for end in ends):
                     return None
                 less, more = ends
-                quotients.append(np.array([by_tau + (more.time - less.time) / (2 * h), (more.v - less.v) / (2 * h)]))
-                noise = 1e-11 * np.array([more.time, more.v]) / h
+                if less.v * more.v < 0:  # at different walls
+                    return None
+                change = np.array([more.time - less.time, abs(more.v) - abs(less.v)])
+                quotients.append(np.array([by_tau, 0.0]) + change / (2 * h))
+                noise = 1e-11 * np.array([more.time, abs(more.v)]) / h
             columns.append((4 * quotients[1] - quotients[0]) / 3)
             errors.append(np.abs(quotients[1] - quotients[0]) / 10 + noise)
         return np.stack(columns, axis=1), np.stack(errors, axis=1)
@@ -237,17 +256,23 @@ class PlainOrbits:
             return -1
         return int(np.searchsorted(np.array(self.lift_offs), tau % self.period)) % len(self.lift_offs)
 
-    def lifted(self, tau: float, horizon: float | None = None) -> Impact:
-        """The first impact of a mass that lifts off from rest, by scipy's DOP853 with dense output."""
-        p, c = self.motion.parameters, self.motion.clearance
+    def lifted(self, tau: float, horizon: float | None = None, v: float = 0.0) -> Impact:
+        """The first impact of a mass that lifts off from rest, by scipy's DOP853 with dense output; v is +-0.0."""
+        motion = self.at(v).motion
+        p, c = motion.parameters, motion.clearance
 
         def slopes(s: float, y: Any) -> Any:
-            return [y[1], self.motion.acceleration(tau + s, c + y[0], y[1], p)]
+            return [y[1], motion.acceleration(tau + s, c + y[0], y[1], p)]
 
         def height(_s: float, y: Any) -> float:
             return float(y[0])
 
+        def depth(_s: float, y: Any) -> float:
+            return float(y[0]) - motion.gap
+
         height.terminal, height.direction = True, -1.0  # type: ignore[attr-defined]
+        depth.terminal = True  # type: ignore[attr-defined]
+        events = (height,) if self.above is None else (height, depth)
         until = self.horizon if horizon is None else horizon
         try:
             # x - c begins as s^3, below any absolute tolerance: steps are short there
@@ -256,7 +281,7 @@ class PlainOrbits:
                 (0.0, until),
                 [0.0, 0.0],
                 "DOP853",
-                events=height,
+                events=events,
                 rtol=SETTINGS.rest,
                 atol=1e-15,
                 max_step=0.2 / self.rate,
@@ -265,17 +290,16 @@ class PlainOrbits:
             return Impact(UNDECIDED, nan, nan, nan)
         if flight.status != 1:
             return Impact(MISS if flight.status == 0 else UNDECIDED, inf, 0.0, nan)
-        time, velocity = float(flight.t_events[0][0]), float(flight.y_events[0][0][1])
-        return Impact(HIT, time, velocity, self.rebound(velocity))
+        return self._ended(v, HIT, float(flight.t[-1]), float(flight.y[1, -1]))
 
 
 @lru_cache(maxsize=8)
-def plain_orbits(osc: Oscillator, rate: float, horizon: float, fast: float) -> PlainOrbits:
+def plain_orbits(osc: Oscillator, rate: float, horizon: float, fast: float, above: bool = False) -> PlainOrbits:
     """The orbits of a model.
 
     Parameters
     ----------
-    rate, horizon : see `PlainOrbits`. fast : largest velocity of interest.
+    rate, horizon : see `PlainOrbits`. fast : largest velocity of interest. above : those of its upper wall, in -x.
 
     Raises
     ------
@@ -288,8 +312,10 @@ def plain_orbits(osc: Oscillator, rate: float, horizon: float, fast: float) -> P
     >>> end.status, round(end.time, 12), round(ball.impact(0.0, 3.0).v, 12)
     ('complete', 2.0, 1.5)
     """
-    rho = plain_steps.rebound(osc)
+    rho = plain_steps.rebound(osc.mirrored if above else osc)
     slopes = [rho(-slow) / slow for slow in (SETTINGS.slow * fast, 1e-3 * SETTINGS.slow * fast)]
     smooth = abs(slopes[1] - slopes[0]) <= 1e-6 * slopes[0] and slopes[0] < 1 - 1e-6
     period = None if osc.period is None else as_float(osc.period)
-    return PlainOrbits(plain_steps.motion(osc, rate), rho, slopes[1] if smooth else nan, period, rate, horizon)
+    motion = plain_steps.motion(osc, rate, above)
+    second = plain_orbits(osc, rate, horizon, fast, True) if osc.upper is not None and not above else None
+    return PlainOrbits(motion, rho, slopes[1] if smooth else nan, period, rate, horizon, second)

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.expressions import Expression
+from singimpact.algebra.expressions import Expression, subtract
 from singimpact.algebra.numbers import as_float
 from singimpact.bench.truth import graded_steps
 from singimpact.bench.truth.graded_steps import EVERYWHERE, Motion
@@ -22,12 +22,12 @@ FUNCTIONS = ("sin", "cos", "tan", "exp", "log", "sqrt", "atan", "tanh")
 
 
 @lru_cache(maxsize=8)
-def motion(osc: Oscillator, rate: float) -> Motion:
+def motion(osc: Oscillator, rate: float, above: bool = False) -> Motion:
     """The model as `graded_steps.first_hit` flies it.
 
     Parameters
     ----------
-    rate : 1/time; a step is at most fineness/rate.
+    rate : 1/time; a step is at most fineness/rate. above : from the upper wall, in -x.
 
     Raises
     ------
@@ -40,13 +40,15 @@ def motion(osc: Oscillator, rate: float) -> Motion:
     3.0
     """
     space: dict[str, Any] = {name: getattr(math, name) for name in FUNCTIONS}
-    exec(compile(text(osc), "<acceleration>", "exec"), space)
+    exec(compile(text(osc, above), "<acceleration>", "exec"), space)
+    gap = math.inf if osc.upper is None else as_float(subtract(osc.upper, osc.clearance))
+    wall = -as_float(osc.upper) if above and osc.upper is not None else as_float(osc.clearance)
     layers = np.array([[EVERYWHERE, 0.0, 1 / rate, 0.0, 0.0]])
-    return Motion(graded_steps.compiled(space["acceleration"]), np.zeros(1), layers, as_float(osc.clearance))
+    return Motion(graded_steps.compiled(space["acceleration"]), np.zeros(1), layers, wall, gap)
 
 
-def text(osc: Oscillator) -> str:
-    """The source of g - f in doubles, one operation a line.
+def text(osc: Oscillator, above: bool = False) -> str:
+    """The source of g - f in doubles, one operation a line; or with `above` that of (-x)''.
 
     Examples
     --------
@@ -59,11 +61,12 @@ def text(osc: Oscillator) -> str:
         return s0 - s3
     """
     lines, (g, f) = _written([osc.forcing(), osc.force()])
-    return "\n".join(["def acceleration(t, x, xdot, p):", *lines, f"    return s{g} - s{f}", ""])
+    turned, ends = (["    x, xdot = -x, -xdot"], (f, g)) if above else ([], (g, f))
+    return "\n".join(["def acceleration(t, x, xdot, p):", *turned, *lines, f"    return s{ends[0]} - s{ends[1]}", ""])
 
 
 def rebound(osc: Oscillator) -> Callable[[float], float]:
-    """rho as a plain Python function of the velocity before the impact.
+    """rho of the lower wall as a plain Python function of the velocity before the impact.
 
     Examples
     --------

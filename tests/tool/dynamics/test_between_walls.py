@@ -16,9 +16,9 @@ def test_a_diagram_has_the_periodic_orbits_of_both_walls(direction):
     found = si.bifurcation(PAIR, "amplitude", ("3.6", "4.4"), 5, direction=direction)
     assert found.settled.all()
     names = [run.name for run in found.attractors]
-    assert names.count("(2, 1) orbit") >= 2
+    assert names.count("(lu, 1) orbit") >= 2
     for value, events, name in zip(found.values, found.events, names, strict=True):
-        if name != "(2, 1) orbit":
+        if name != "(lu, 1) orbit":
             continue
         orbits = [orbit for orbit in PAIR.replace(amplitude=value).periodic("lu", 1) if orbit.stable]
         own = {round(float(v), 6) for orbit in orbits for v in np.where(orbit.wall == 1, -orbit.v, orbit.v)}
@@ -97,3 +97,35 @@ def test_an_orbit_is_found_from_a_start():
     assert np.allclose(again.v, stable.v, rtol=1e-9)
     with pytest.raises(InputError, match="start"):
         osc.periodic("lu", 1, start="here")
+
+
+@pytest.mark.parametrize("force", ["-9.81", "-9.81 + cos(t)/10**15"])
+@pytest.mark.parametrize("v", [27.9, 9.0, 2.5, 2.4])
+def test_a_ball_that_reaches_the_ceiling_does_not_come_to_rest_before(force, v):
+    """Of a constant force the sum of a chatter is exact at any speed, so nothing but the ceiling speaks against it."""
+    ball, g, height, r = si.ImpactOscillator("0", force, 0, "0.9", upper="0.3"), 9.81, 0.3, 0.9
+    time, speed, walls = 0.0, v, [0]
+    while (squared := speed**2 - 2 * g * height) > 0:
+        down = r * squared**0.5
+        landing = (down**2 + 2 * g * height) ** 0.5
+        time += (speed - squared**0.5 + landing - down) / g
+        speed, walls = r * landing, [*walls, 1, 0]
+    orbit, limit = ball.orbit(0, v, 400), ball.chatter_limit(0, v)
+    assert orbit.wall[: len(walls)].tolist() == walls
+    end = orbit.tau[orbit.kind == "complete"][0]
+    assert end == pytest.approx(time + 2 * speed / g / (1 - r), rel=1e-12)
+    assert limit.status == (si.Status.complete if walls == [0] else si.Status.lifts_off)
+    assert limit.tau == pytest.approx(end if walls == [0] else orbit.tau[1], rel=1e-12)
+
+
+def test_a_diagram_knows_chatter_that_comes_back_after_many_impacts():
+    """Over 100 events from one lift-off to the next: what follows a lift-off is fixed by its phase and wall."""
+    walls = {"upper": "0.108", "upper_restitution": "0.521"}
+    osc = si.ImpactOscillator("x + x**3 + 0.119*xdot", "A*cos(3.007*t)", "-0.425", "0.678", {"A": "6.449"}, **walls)
+    orbit = osc.replace(A=6.449).orbit(0, 0.1, 1000)
+    lifted = np.flatnonzero(orbit.kind == "release")
+    assert (np.diff(lifted) > 64).all()
+    turns = np.diff(orbit.tau[lifted]) * 3.007 / (2 * np.pi)
+    found = si.bifurcation(osc, "A", ("6.449", "6.45"), 2, settle=3000)
+    assert found.settled[0]
+    assert found.attractors[0].name == f"(inf, {turns[0]:.0f}) chatter for ever"

@@ -48,6 +48,7 @@ MODELS = {
     "constant": si.ImpactOscillator("0", "-2", 0, "0.9"),
     "a law": si.linear("2.8", 0, "-0.8*v - 0.1*(-v)**1.5"),
     "duffing": si.ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "cos(1.7*t)", "0.3", "0.6"),
+    "between walls": si.ImpactOscillator("x + x**3", "3*cos(1.7*t)", "-0.5", "0.6", upper="0.4"),
 }
 
 
@@ -458,9 +459,10 @@ def test_the_kinds_of_work_are_told_apart():
     assert len(set(kinds)) == len(kinds)
 
 
-def test_long_calls_hear_an_interruption(compiled, monkeypatch):
+@pytest.mark.parametrize("name", ["duffing", "between walls"])
+def test_long_calls_hear_an_interruption(compiled, monkeypatch, name):
     """Ctrl-C comes when another thread makes the call, and the main one waits for it."""
-    osc = compiled["duffing"]
+    osc = compiled[name]
     osc.iterate(0.3, 0.5, 100)
     begun = threading.Event()
 
