@@ -475,8 +475,8 @@ def _precise(osc: Oscillator, states: States, rough: ChatterLimit, digits: int) 
                 tau, v, count = mp.convert(step.tau), mp.convert(step.v), count + 1
                 osc = osc.mirrored if step.wall else osc
             if rough.status == Status.lifts_off:
-                found = _rounded(tau, count, small * abs(tau), Status.lifts_off, digits)
-                return replace(found, wall=rough.wall)
+                limit = _rounded(tau, count, small * abs(tau), Status.lifts_off, digits)
+                return replace(limit, wall=rough.wall)
             r = as_mpf(osc.slope_at_rest(), mp)
             rho = {k: value for k, value in series_of_rho(osc, ENDING.many, ring).items() if k > 1}
             contact = Contact.of(osc, tau, 0, ENDING.many, ring)
@@ -484,8 +484,8 @@ def _precise(osc: Oscillator, states: States, rough: ChatterLimit, digits: int) 
             error = _last(terms)
             end = tau + sum(reversed(terms))
             if ENDING.trust * error <= small * abs(end) or v == 0:
-                found = _rounded(end, count, ENDING.trust * error + small * abs(end), Status.complete, digits)
-                return replace(found, wall=rough.wall)
+                limit = _rounded(end, count, ENDING.trust * error + small * abs(end), Status.complete, digits)
+                return replace(limit, wall=rough.wall)
             wanted = count + max(1, int(mp.ceil(mp.log(small * abs(end) / (5 * error)) / mp.log(r) / ENDING.many)))
 
 

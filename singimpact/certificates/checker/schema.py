@@ -302,7 +302,7 @@ def require_form(content: dict[str, Any]) -> None:
     require(head | STATEMENTS[content["statement"]](content), content)
     model = content["model"]
     parts = ("f", "g", "clearance", "restitution", "upper", "upper_restitution")
-    used = re.findall(r"[A-Za-z_]\w*", " ".join(model.get(part, "") for part in parts))
+    used = re.findall(r"[A-Za-z_]\w*", " ".join(model.get(key, "") for key in parts))
     unused = set(model.get("parameters", ())) - set(used)
     expect(not unused, f"model has the parameter {min(unused, default='')!r}, which it does not use")
     moving = re.search(r"\bt\b", model["f"]) is not None and content["statement"] not in IN_TIME

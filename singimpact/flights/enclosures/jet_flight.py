@@ -399,11 +399,11 @@ class _JetFlight:
         from flint import arb
 
         z, v, clock = [arb(0), *self.z[1:]], self.v, self.tau + self.time
-        place = self.gap if self.across else arb(0)
-        a = total(self._forcing(clock), scaled(self._force([place, *z[1:]], v, "near", (0, 0, 0)), -1))
+        level = self.gap if self.across else arb(0)
+        a = total(self._forcing(clock), scaled(self._force([level, *z[1:]], v, "near", (0, 0, 0)), -1))
         late = scaled(quotient(z, v), -1)
         late = scaled(quotient(total(z, scaled(product(late, late), a[0] / 2)), v), -1)
-        _, by_x, by_v = self.equation.run("force", x=place, xdot=v[0])
+        _, by_x, by_v = self.equation.run("force", x=level, xdot=v[0])
         jerk = self.equation.run("forcing", t=clock)[1] - by_x * v[0] - by_v * a[0]
         landing = total(v, product(a, late), scaled(product(late, late), jerk / 2))
         landing = scaled(landing, -1) if self.across else landing
