@@ -172,7 +172,8 @@ class CompiledModel:
     def _timed(self, entry: Callable[..., int], arguments: tuple[Any, ...], units: int, kept: tuple[Any, ...]) -> int:
         """A call of an entry; one that is expected to be long hears Ctrl-C."""
         kind, begun = arguments[0][layout.KIND], perf_counter()
-        found = interruptible(entry, arguments, kept) if self._is_long(kind, units) else entry(*arguments)
+        # an interrupted call goes on with the numbers of this model, whoever has let go of it
+        found = interruptible(entry, arguments, (self, kept)) if self._is_long(kind, units) else entry(*arguments)
         self._measure(kind, units, begun)
         return found
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import re
 import signal
@@ -9,6 +10,7 @@ import subprocess
 import sys
 import threading
 import time
+import weakref
 from collections import Counter
 from dataclasses import replace
 
@@ -457,6 +459,34 @@ def test_the_kinds_of_work_are_told_apart():
     kinds = (PREPARE, PREPARE_BATCH, HITS, SEGMENT, ITERATE,
              VARIATIONS, FOLLOW, JUDGE, RELEASES)  # fmt: skip
     assert len(set(kinds)) == len(kinds)
+
+
+def test_an_interrupted_call_has_the_numbers_of_its_model_to_its_end(compiled, monkeypatch):
+    """The code reads them at an address, whatever the caller lets go of."""
+    osc, goes_on = compiled["duffing"], threading.Event()
+    model = CompiledModel(osc, compiled_model(osc).allowance)
+    numbers = weakref.ref(model.flat)
+
+    class Interrupted(threading.Thread):
+        def join(self, timeout=None):
+            if timeout is not None:
+                raise KeyboardInterrupt
+
+    monkeypatch.setattr(interruptible, "Thread", Interrupted)
+    model._seconds.clear()
+    model._guess = 1.0
+    with pytest.raises(KeyboardInterrupt):
+        model._timed(lambda *_: goes_on.wait() or 0, (model._sizes,), 10**6, ())
+    (late,) = [thread for thread in threading.enumerate() if thread.name == interruptible.NAME]
+    del model
+    gc.collect()
+    assert numbers() is not None
+    goes_on.set()
+    while late.is_alive():
+        time.sleep(0.01)
+    del late
+    gc.collect()
+    assert numbers() is None
 
 
 @pytest.mark.parametrize("name", ["duffing", "between walls"])
