@@ -10,7 +10,7 @@ import sympy
 from singimpact.theory.notation import first_positive, joined, latex, parenthesised
 
 
-def by_degree(expression: Any, *variables: Any) -> list[str]:
+def by_degree(expression: sympy.Expr, *variables: sympy.Symbol) -> list[str]:
     """The homogeneous parts of a polynomial in the variables, lowest degree first, each as a sum of monomials.
 
     Examples
@@ -25,7 +25,7 @@ def by_degree(expression: Any, *variables: Any) -> list[str]:
     return [_part([term for term in terms if sum(term[0]) == degree], variables) for degree in degrees]
 
 
-def _part(terms: list[tuple[tuple[int, ...], Any]], variables: tuple[Any, ...]) -> str:
+def _part(terms: list[tuple[tuple[int, ...], sympy.Expr]], variables: tuple[sympy.Symbol, ...]) -> str:
     shown = []
     for powers, coefficient in terms:
         monomial = _monomial(powers, variables)
@@ -34,7 +34,7 @@ def _part(terms: list[tuple[tuple[int, ...], Any]], variables: tuple[Any, ...]) 
     return joined(shown)
 
 
-def _beside(coefficient: Any, monomial: Any) -> str:
+def _beside(coefficient: sympy.Expr, monomial: sympy.Expr) -> str:
     """A coefficient before its monomial: a sum in it stays in front, unlike in a product."""
     if not coefficient.has(sympy.Add):
         return latex(coefficient * monomial)
@@ -44,11 +44,11 @@ def _beside(coefficient: Any, monomial: Any) -> str:
     return f"{latex(coefficient)} {latex(monomial)}"
 
 
-def _monomial(powers: tuple[int, ...], variables: tuple[Any, ...]) -> Any:
+def _monomial(powers: tuple[int, ...], variables: tuple[sympy.Symbol, ...]) -> Any:
     return sympy.prod(x**n for x, n in zip(variables, powers, strict=True))
 
 
-def in_powers(expression: Any, symbol: Any, rising: bool = False) -> str:
+def in_powers(expression: sympy.Expr, symbol: sympy.Symbol, rising: bool = False) -> str:
     """A polynomial in one symbol, highest power first unless `rising`, each coefficient in factors.
 
     Examples
@@ -63,13 +63,13 @@ def in_powers(expression: Any, symbol: Any, rising: bool = False) -> str:
     return joined([latex(piece) for piece in (pieces[::-1] if rising else pieces)])
 
 
-def factored(expression: Any) -> str:
+def factored(expression: sympy.Expr | tuple[sympy.Expr, ...]) -> str:
     """An expression, or each part of a tuple, in factors."""
     if isinstance(expression, tuple):
         return r"\bigl(" + r",\ ".join(factored(part) for part in expression) + r"\bigr)"
     return latex(sympy.factor(expression))
 
 
-def _same(expression: Any, pieces: list[Any]) -> None:
+def _same(expression: sympy.Expr, pieces: list[sympy.Expr]) -> None:
     if sympy.expand(expression - sympy.Add(*pieces)) != 0:
         raise ArithmeticError("the pieces shown do not add up to the expression")

@@ -368,11 +368,11 @@ def _split(lines: list[str]) -> str:
 
 
 def _filled(template: str, **values: Any) -> str:
-    return str(_environment().get_template(f"{template}.j2").render(**values))
+    return str(environment().get_template(f"{template}.j2").render(**values))
 
 
 @cache
-def _environment() -> Environment:
+def environment() -> Environment:
     """Jinja with delimiters that LaTeX does not use; a name that is missing is an error, never an empty place."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 

@@ -5,6 +5,7 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 from keyword import iskeyword
 from typing import Any
 
@@ -73,11 +74,18 @@ def _of_power_series(name: str, says: str, left: str, answer: PowerSeries) -> Se
 
 
 def _of_polynomial(
-    name: str, says: str, left: str, order: int, found: Any, *variables: str, longer: Any = None
+    name: str,
+    says: str,
+    left: str,
+    variables: tuple[str, ...],
+    order: int,
+    further: int | None,
+    to: Callable[[int], Any],
 ) -> Series:
-    """A series from its polynomial; `longer` is the same one to a higher order, from which `valid` is estimated."""
-    valid = None if longer is None else _valid_box(order, _terms_of(longer, variables))
-    return Series(name, says, left, variables, order, _terms_of(found, variables), found, valid)
+    """A series from its polynomial `to` an order; `valid` is estimated from the one to a further order."""
+    polynomial = to(order)
+    valid = None if further is None else _valid_box(order, _terms_of(to(further), variables))
+    return Series(name, says, left, variables, order, _terms_of(polynomial, variables), polynomial, valid)
 
 
 def _terms_of(found: Any, variables: Sequence[str]) -> dict[Exponents, Any]:
@@ -157,9 +165,8 @@ def series(request: SeriesRequest) -> Iterator[Series]:
     for j in request.contact_orders():
         at, top = NAMES[j], request.capped(LIMITS.sheet)
         what = f"Launch velocity of the flight that lands after $t$, at a {at} point"
-        beyond = request.longer(top, LIMITS.sheet_numbers)
-        longer = None if beyond is None else request.of(v_c, beyond, at=at)
-        yield _of_polynomial(f"v_c_{at}", what, "v_c", top, request.of(v_c, top, at=at), "sigma", "t", longer=longer)
+        further, sheet_to = request.longer(top, LIMITS.sheet_numbers), partial(request.of, v_c, at=at)
+        yield _of_polynomial(f"v_c_{at}", what, "v_c", ("sigma", "t"), top, further, sheet_to)
         yield from _at_regular(request) if j == 0 else _on_gamma(request, at, j)
 
 
@@ -178,9 +185,8 @@ def _on_gamma(request: SeriesRequest, at: str, j: int) -> Iterator[Series]:
     if j == 1 and not request.keep:
         top = request.capped(HIGHEST["tangency"])
         what = "The outline of $p$, the image of the horizon"
-        beyond = request.longer(top, HIGHEST_NUMBERS)
-        longer = None if beyond is None else _outline(request, beyond)
-        yield _of_polynomial("outline_tangency", what, "v", top, _outline(request, top), "sigma", longer=longer)
+        further, outline_to = request.longer(top, HIGHEST_NUMBERS), partial(_outline, request)
+        yield _of_polynomial("outline_tangency", what, "v", ("sigma",), top, further, outline_to)
 
 
 def _outline(request: SeriesRequest, top: int) -> Any:
@@ -201,7 +207,9 @@ def series_text(request: SeriesRequest, form: str) -> str:
         return module_source(f"Series to order {request.order} in jets.", COMMAND, [*sheets, *curves])
     answers = list(series(request))
     if form == "numpy":
-        head = [_points_source(request), _valid_source(answers), RATIO_SOURCE]
+        points = {name: repr(float(text)) for name, text in _points(request).items()}
+        valid = {item.name: _rounded(item.valid) for item in answers}
+        head = [_assigned("TAU_STAR", points), _assigned("VALID_WITHIN", valid), RATIO_SOURCE]
         return module_source(_title(request), "singimpact derive", [*head, *(_function(item) for item in answers)])
     if form == "json":
         data = {"order": request.order, "tau_star": _points(request), "series": [_as_data(item) for item in answers]}
@@ -239,14 +247,10 @@ def _title(request: SeriesRequest) -> str:
     return "\n".join(lines)
 
 
-def _points_source(request: SeriesRequest) -> str:
-    rows = "".join(f'    "{name}": {float(text)!r},\n' for name, text in _points(request).items())
-    return f"TAU_STAR = {{\n{rows}}}\n"
-
-
-def _valid_source(found: Sequence[Series]) -> str:
-    rows = "".join(f'    "{each.name}": {_rounded(each.valid)},\n' for each in found)
-    return f"VALID_WITHIN = {{\n{rows}}}\n"
+def _assigned(name: str, values: Mapping[str, str]) -> str:
+    """Source in which a name is a dict of numbers, one a line."""
+    rows = "".join(f'    "{key}": {value},\n' for key, value in values.items())
+    return f"{name} = {{\n{rows}}}\n"
 
 
 def _rounded(radius: float | None) -> str:

@@ -255,12 +255,11 @@ class Verdict:
     def as_dict(self) -> dict[str, Any]:
         """The verdict as plain data; the kind is called "verdict" there."""
         data = asdict(self)
-        data |= {"verdict": data.pop("kind"), "worth": self.worth}
+        data |= {"verdict": data.pop("kind"), "worth": self.worth, "seconds": round(self.seconds, 4)}
         data["witness"] = dict(self.witness) if self.witness is not None else None
-        data |= {name: list(data[name]) for name in ("rests_on", "modulo", "effective_modulo")}
-        data["certificates"] = list(self.certificates)
-        data["trials"] = [asdict(trial) for trial in self.trials]
-        data["seconds"] = round(self.seconds, 4)
+        data |= {
+            name: list(data[name]) for name in ("rests_on", "modulo", "effective_modulo", "certificates", "trials")
+        }
         first = ("id", "verdict", "effective", "worth", "title", "printed", "corrected", "corrected_kind", "witness")
         return {key: data[key] for key in first} | {key: value for key, value in data.items() if key not in first}
 

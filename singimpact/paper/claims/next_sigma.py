@@ -29,7 +29,7 @@ def next_sigma() -> Any:
     return sympy.expand(eta - sigma / 2 - bent)
 
 
-def next_sigma_remainder(leading: Any) -> tuple[Any, dict[tuple[int, int], Any]]:
+def next_sigma_remainder(leading: sympy.Expr) -> tuple[Any, dict[tuple[int, int], Any]]:
     """(lowest degree, its terms) of `next_sigma` minus a polynomial; the degree is oo where nothing is left.
 
     Examples

@@ -132,12 +132,15 @@ def _side_by_side(rows: list[Row], width: int, paint: Painter) -> str:
 
 
 def _stacked(rows: list[Row], width: int, paint: Painter) -> str:
-    lines: list[str] = []
-    for row in rows:
-        lines.append(f"{row.id}  {paint(row.verdict, row.kind)}  {row.seconds} s")
-        lines += wrapped("    ", row.statement, width)
-        lines += wrapped("    = ", row.evidence, width)
-    return "\n".join(lines)
+    blocks = (
+        [
+            f"{row.id}  {paint(row.verdict, row.kind)}  {row.seconds} s",
+            *wrapped("    ", row.statement, width),
+            *wrapped("    = ", row.evidence, width),
+        ]
+        for row in rows
+    )
+    return "\n".join(line for block in blocks for line in block)
 
 
 def _cell(text: str, width: int) -> list[str]:
@@ -310,8 +313,11 @@ class VerdictTable(Sequence["Verdict"]):
         misprints = [verdict for verdict in self if verdict.kind == CORRECTED]
         if misprints:
             ids = max(len(verdict.id) for verdict in misprints)
-            lines += ["", f"Misprinted, {len(misprints)} (`singimpact errata` gives the reasons):"]
-            lines += [f"  {verdict.id:{ids}}  {_correction(verdict)}" for verdict in misprints]
+            lines += [
+                "",
+                f"Misprinted, {len(misprints)} (`singimpact errata` gives the reasons):",
+                *(f"  {verdict.id:{ids}}  {_correction(verdict)}" for verdict in misprints),
+            ]
         return "\n".join(line if width is None or len(line) <= width else f"{line[: width - 1]}…" for line in lines)
 
     def html(self) -> str:

@@ -39,7 +39,7 @@ def same(left: Any, right: Any) -> bool:
     return equal
 
 
-def _cancels(expression: Any) -> bool:
+def _cancels(expression: sympy.Expr) -> bool:
     roots = sorted((p for p in expression.atoms(sympy.Pow) if p.exp.is_Rational and p.exp.q == 2), key=str)
     if not roots:
         return bool(sympy.cancel(expression) == 0)
@@ -50,7 +50,7 @@ def _cancels(expression: Any) -> bool:
     return bool(sympy.cancel(sympy.rem(numerator, below * w**2 - above, w)) == 0)
 
 
-def _root_ratio(radicand: Any, base: Any) -> Any:
+def _root_ratio(radicand: sympy.Expr, base: sympy.Expr) -> Any:
     """sqrt(radicand)/sqrt(base), when it is a positive rational."""
     ratio = sympy.sqrt(sympy.cancel(radicand / base))
     if not ratio.is_Rational:
@@ -63,6 +63,25 @@ def parts_of(value: Any) -> list[Any]:
     if isinstance(value, tuple | list):
         return [part for item in value for part in parts_of(item)]
     return list(value.flat()) if isinstance(value, sympy.MatrixBase) else [sympy.sympify(value)]
+
+
+def root_of_line(expression: Any, letter: sympy.Expr) -> Any:
+    """The root of an expression of degree 1 in a letter.
+
+    Raises
+    ------
+    ArithmeticError : it has another degree.
+
+    Examples
+    --------
+    >>> x, y = sympy.symbols("x y")
+    >>> root_of_line(2 * x - y, x)
+    y/2
+    """
+    line = sympy.Poly(expression, letter)
+    if line.degree() != 1:
+        raise ArithmeticError(f"{expression} is not linear in {letter}")
+    return -line.nth(0) / line.nth(1)
 
 
 def identity(truth: Callable[[], Any], what: str = "derived from the equation of motion") -> Callable[[Any], Check]:
@@ -103,12 +122,12 @@ def sample(stated: Any, derived: Any) -> dict[str, str]:
     raise ArithmeticError("no sample point tells the two expressions apart")
 
 
-def _short(value: Any) -> str:
+def _short(value: sympy.Expr) -> str:
     return str(value) if value.is_Rational else str(sympy.N(value, 15))
 
 
 def every(
-    checks: Sequence[tuple[str, bool]],
+    checks: Sequence[tuple[str, bool] | Check],
     kind: str = "proved",
     witness: Callable[[], dict[str, str]] | None = None,
     modulo: tuple[str, ...] = (),
@@ -118,8 +137,8 @@ def every(
 
     Parameters
     ----------
-    checks : (what was tested, whether it passed).
-    witness : numbers for a failure; without it the parts that failed are named.
+    checks : (what was tested, whether it passed), or checks that have their own evidence.
+    witness : numbers for a failure of a part that has none of its own; without it the parts that failed are named.
     modulo : names of theorems that take the checks for their hypotheses.
     tried : a trial on true orbits, run where the checks pass. It decides nothing: an integrator that fails or raises
         makes no theorem wrong, and the evidence names it.
@@ -131,11 +150,13 @@ def every(
     >>> every([("0 < mu < 1", True)], tried=lambda: ("two orbits agree to 1e-9", False)).evidence
     '0 < mu < 1; a trial apart from the argument FAILS: two orbits agree to 1e-9'
     """
-    failed = [name for name, passed in checks if not passed]
+    named = [(check.evidence, check.holds) if isinstance(check, Check) else check for check in checks]
+    failed = [name for name, passed in named if not passed]
     if not failed:
         apart = [] if tried is None else [_apart(tried)]
-        return Check(True, kind, "; ".join([*(name for name, _ in checks), *apart]), modulo=modulo)
-    shown = witness() if witness else {"fails": "; ".join(failed)}
+        return Check(True, kind, "; ".join([*(name for name, _ in named), *apart]), modulo=modulo)
+    own = next((check.witness for check in checks if isinstance(check, Check) and check.witness), None)
+    shown = own or (witness() if witness else {"fails": "; ".join(failed)})
     return Check(False, kind, f"fails: {'; '.join(failed)}", shown, modulo)
 
 

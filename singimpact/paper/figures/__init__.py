@@ -10,7 +10,7 @@ from typing import Any
 from singimpact import cache
 from singimpact.handed_on import names_of
 from singimpact.inputs import checked_keywords, refuse
-from singimpact.paper.figures.panel import Dot, Line, Panel, Picture, Region
+from singimpact.paper.figures.panel import CAPTIONS, Dot, Line, Panel, Picture, Region
 from singimpact.scenes.layer_data import key_of
 from singimpact.store import cache_folder
 
@@ -72,11 +72,13 @@ KINDS = (Picture, Panel, Line, Region, Dot)
 
 def kept_picture(number: int | str) -> Picture:
     """The data of a figure as `picture` gives them, from the cache when they were computed before."""
-    place = cache_folder() / "figures" / f"{key_of(number, cache.source_digest(Path(__file__).parent))}.figure"
-    content = cache.recall(place)
+    # captions are no source to the digest, which reads programs and pages alone
+    key = key_of(number, cache.source_digest(Path(__file__).parent), CAPTIONS.read_text(encoding="utf-8"))
+    file = cache_folder() / "figures" / f"{key}.figure"
+    content = cache.recall(file)
     if content is not None:
-        found: Picture = cache.unpacked(content, KINDS)
-        return found
-    made = picture(number)
-    cache.keep(place, cache.packed(made))
-    return made
+        stored: Picture = cache.unpacked(content, KINDS)
+        return stored
+    computed = picture(number)
+    cache.keep(file, cache.packed(computed))
+    return computed

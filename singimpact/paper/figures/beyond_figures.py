@@ -18,7 +18,7 @@ from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.paper.claims.beyond.every_order import j
 from singimpact.paper.claims.beyond.hertz import EXPONENT, FACTOR, SECOND, q
-from singimpact.paper.figures.panel import Dot, Line, Panel, Picture, Point, Region
+from singimpact.paper.figures.panel import Dot, Line, Panel, Picture, Point, Region, picture_of
 from singimpact.paper.trials import loop_heights
 from singimpact.paper.trials.hertz_orbits import POWERS, STARTS, measured
 from singimpact.paper.trials.universal_foot import covering, elastic, foot, scaled
@@ -74,22 +74,7 @@ def figure_B4() -> Picture:
         Panel(((0.0, 1.0), (0.0, 0.52)), "$r$", r"$v/(a'(A)h^2)$", "(a) heights", plain),
         Panel(((0.0, 1.0), (-4.2, -0.2)), "$r$", r"$\log_{10}(w - w_\gamma)$", "(b) above $\\gamma$", beside),
     ]
-    return Picture(
-        "B4",
-        "Heights of the loops next to A",
-        ("b:loops-map", "b:loops"),
-        "; ".join(swan.name for swan in loop_heights.SWANS),
-        panels,
-        2,
-        {"farthest": worst},
-        (
-            r"Over the line $\tau = A - h$ the loops of $W^s(X)$, the tears around which they lie and $\gamma$ "
-            r"have heights $a'(A)h^2 w$ with $w$ algebraic in $r$. Each tear lies between the two edges of its "
-            r"loop, so close to the lower one that a loop looks like a hairpin. (a) $w$; (b) its distance from "
-            r"that of $\gamma$. The dots are crossings on true orbits of the universal model and of two "
-            r"oscillators, at $h$ = 1/2000 of the half distance of $A$ and $B$."
-        ),
-    )
+    return picture_of("B4", "; ".join(swan.name for swan in loop_heights.SWANS), panels, facts={"farthest": worst})
 
 
 def _start(name: str, r: float) -> float:
@@ -121,19 +106,11 @@ def figure_B5() -> Picture:
         Region(band, words="3 within 2 %"),
         Region(np.vstack([tops, bottoms[::-1]]), SURFACE, words="proved bounds, for all $r$ up to 0.95"),
     ]
-    return Picture(
+    return picture_of(
         "B5",
-        "The foot X for every restitution",
-        ("b:foot-monotone", "b:foot", "b:foot-limit"),
         "x'' = 12(1 - t^2), c = 0",
         [Panel(((0.0, 1.0), (2.92, 3.08)), "$r$", r"$X\,(1-r)^{3/7}$", lines=lines, regions=regions)],
         facts={"limit": limit, "most": float(tops[:, 1].max()), "least": float(bottoms[:, 1].min())},
-        caption=(
-            r"The time $X$ at which chatter from $A$ ends in the universal negative swan, for every restitution: "
-            r"$X(1-r)^{3/7}$ stays within 2 % of 3. It is enclosed for all $r$ up to 0.95 by balls, as $X$ rises "
-            r"with $r$. The limit as $r \to 1$ is $(14u/(3\cdot 12^{2/3}))^{3/7}$, where $u = 13.919146$ is the "
-            r"adiabatic invariant of the elastic ball from $A$."
-        ),
     )
 
 
@@ -157,22 +134,7 @@ def figure_B6() -> Picture:
         Panel(((times[0], times[-1]), (-0.08 * top, top)), "$t$", "$x - c$", "(a) two periods", [whole]),
         Panel(((-1.2, 6.6), (-0.1, 1.25)), "$s$", r"$(x-c)/(|a''|H^4)$", "(b) one hop", hops),
     ]
-    return Picture(
-        "B6",
-        "The orbit that is born at a negative swan",
-        ("b:onset-none", "b:onset-hop", "b:onset"),
-        str(first),
-        panels,
-        2,
-        facts,
-        (
-            r"Past a negative swan one orbit is born. (a) The mass rests on the wall, is thrown at $A$, hops, "
-            r"chatters and rests again, once a period, whatever it did before: $x'' + x = \cos 2t$, $r = 4/5$, "
-            r"$c_0 = 1$. (b) One hop in lengths scaled by the half distance $H$ of $A$ and $B$, $s$ from the "
-            r"middle, for three clearances: the first arc tends to $\frac{1}{24}(s+1)^3(3-s)$, of height 9/8, and "
-            r"hits with the speed $8/3$ after the time 4."
-        ),
-    )
+    return picture_of("B6", str(first), panels, facts)
 
 
 def _swan(c: str) -> ImpactOscillator:
@@ -240,31 +202,14 @@ def figure_B7() -> Picture:
     """A lens opens on the arc of a swan, and the flight released at one tangency point is at rest at another."""
     model = linear("2.8", 0, "0.8")
     panels, facts = _rows(model, B7)
-    caption = (
-        "What the swan of $c = 1$ meets first as the clearance falls: $x'' + x = \\cos 2.8t$. Above: at the tacnode "
-        f"$c_0$ = {facts['tacnode']:.7f} (dot: the launch of its flight) an arc of the visible outline, bold, touches "
-        "its copy of the period before; beyond it a lens of launches that miss both is open between them. Shown "
-        r"is $v - q(\tau)$, $q$ a polynomial of degree 3. Below: the flight from tangency to tangency, released at A "
-        f"(dot), at $c_0$ = {facts['tangency to tangency']:.7f}; beyond it the piece of the copy to the right of A is "
-        "gone, and its tip lies above the arc that ends at A. The middle panels are a hair before the transition."
-    )
-    claims = ("b:events-first", "b:events-values", "b:events-met")
-    return Picture("B7", "A swan meets its copy", claims, str(model), panels, 3, facts, caption)
+    return picture_of("B7", str(model), panels, facts)
 
 
 def figure_B8() -> Picture:
     """A triple point, and the two tangencies."""
     model = two_waves()
     panels, facts = _rows(model, B8)
-    caption = (
-        "Three more transitions of the visible outline (bold), each before, at and after, with the launch of its "
-        "flight as a dot. Top: a flight with three rests; two T-junctions trade places. Middle: as $c$ falls the tip "
-        r"of an arc comes out from behind another; $v - q(\tau)$ is shown, $q$ a polynomial of degree 3. Bottom: the "
-        "flight released at A is at rest again, and the arc that ended on both sides of A passes over it."
-    )
-    claims = ("b:events-front", "b:events-critical", "b:events-met")
-    title = "A triple point and two tangencies of the outline"
-    return Picture("B8", title, claims, str(model), panels, 3, facts, caption)
+    return picture_of("B8", str(model), panels, facts)
 
 
 def _rows(model: Oscillator, rows: tuple[Row, ...]) -> tuple[list[Panel], dict[str, float]]:
@@ -310,8 +255,10 @@ def _drawn(
         low, high = float(inner[:, 1].min()), float(inner[:, 1].max())
         box = tau, (low - 0.1 * (high - low), high + 0.1 * (high - low))
     for surface, _, sign in surfaces:
-        lines = [Line(shift(curve), "P", "P") for curve in _inside(surface.outline, tau)]
-        lines += [Line(shift(curve), "jump", "visible P") for curve in _inside(surface.discontinuities, tau)]
+        lines = [
+            *(Line(shift(curve), "P", "P") for curve in _inside(surface.outline, tau)),
+            *(Line(shift(curve), "jump", "visible P") for curve in _inside(surface.discontinuities, tau)),
+        ]
         dots = [Dot("", _pair(shift(np.array([launch]))))] if sign == "=" else []
         label = r"$v - q(\tau)$" if row.degree else "$v$"
         panels.append(Panel(box, y=label, title=f"{row.title}: $c {sign} c_0$", lines=lines, dots=dots))
@@ -358,12 +305,12 @@ def exponents(order: int) -> Array:
 
 def figure_B9() -> Picture:
     """The exponent against q, and what true orbits have beyond the first term against the second term."""
-    first, second, facts = list[Line](), list[Line](), dict[str, float]()
-    for order, pen in ORDERS.items():
-        words = f"contact order $j = {order}$"
-        first.append(Line(exponents(order), pen, f"j = {order}", f"$j = {order}$", 0.7, words=words))
-    guide = np.array([[x, x] for x in (-4.0, -1.0)])
-    second.append(Line(guide, "before", "equal", words="equal"))
+    facts = dict[str, float]()
+    first = [
+        Line(exponents(order), pen, f"j = {order}", f"$j = {order}$", 0.7, words=f"contact order $j = {order}$")
+        for order, pen in ORDERS.items()
+    ]
+    second = [Line(np.array([[x, x] for x in (-4.0, -1.0)]), "before", "equal", words="equal")]
     for start in STARTS:
         for power in POWERS:
             measurement = measured(start, power)
@@ -376,21 +323,15 @@ def figure_B9() -> Picture:
             ]
             mark = np.array([[float(power), measurement.exponent]])
             first.append(Line(mark, "crossing", "true orbits", beads=True, words="true orbits"))
-            for row in rows:
-                second.append(Line(np.array([row]), "crossing", "true orbits", beads=True, words="true orbits"))
+            second += [
+                Line(np.array([row]), "crossing", "true orbits", beads=True, words="true orbits") for row in rows
+            ]
             facts[f"{start.name}, q = {power}"] = measurement.exponent - n
-    caption = (
-        r"Impacts that lose $Cv^q$ of a low speed $v$: $\rho(-v) = v(1 - Cv^q)$, $0 < q < 1$. (a) $\gamma$ is "
-        r"$|\sigma|^{(j+1)/(1-q)}$ times a constant, so it is flatter at the contact point than $|\sigma|^{j+1}$; "
-        r"the dots are slopes of $\ln v$ between two points of $\gamma$ found by halving, on four oscillators. (b) "
-        r"The relative excess of $v$ over the first term, against the second term $GP$, at all points of (a)."
-    )
     panels = [
         Panel(((0.0, LARGEST), (1.5, 7.0)), "$q$", r"exponent of $|\sigma|$", "(a) the exponent", first),
         Panel(
             ((-4.0, -1.0), (-4.0, -1.0)), r"$\log_{10} GP$", r"$\log_{10}$ of the excess", "(b) the second term", second
         ),
     ]
-    claims = ("b:hertz", "b:hertz-next", "b:hertz-measured")
     models = "; ".join(start.name for start in STARTS)
-    return Picture("B9", "Gamma where impacts lose a power of the speed", claims, models, panels, 2, facts, caption)
+    return picture_of("B9", models, panels, facts)

@@ -14,7 +14,7 @@ from singimpact.flights.flight_path import many_paths
 from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration
-from singimpact.paper.figures.panel import ARCS, Dot, Line, Panel, Picture, Point, Region
+from singimpact.paper.figures.panel import ARCS, Dot, Line, Panel, Picture, Point, Region, picture_of
 from singimpact.studies import swan_points
 from singimpact.surface.curve import Curve, Window
 from singimpact.surface.impact_surface import ImpactSurface
@@ -124,15 +124,7 @@ def figure_3() -> Picture:
     ]
     step = np.diff(through.points[:4], axis=0)
     facts = {"slope": slope, "drawn": float(step[0, 1] / step[0, 0])}
-    caption = (
-        "Where the acceleration at the wall is negative, every weak impact is followed by complete chatter. (a) "
-        "The linearised map contracts along parallel lines. (b) The stable manifolds of the map fill a "
-        "neighbourhood of the axis: the mass comes to rest at the foot of the manifold on which it starts. Arrows "
-        "point along the orbits."
-    )
-    return Picture(
-        3, "Nondegenerate chatter", ("s3-DG", "s3-eigenvectors", "t:t1"), str(model), panels, 2, facts, caption
-    )
+    return picture_of(3, str(model), panels, facts)
 
 
 def _near(curves: list[Curve], tau: float, size: float, side: int) -> Array:
@@ -214,20 +206,7 @@ def figure_4() -> Picture:
         (sigma, (-0.6 * v, 0.15 * v)),
         (sigma, (-0.1 * v, 0.4 * v)),
     ]
-    return Picture(
-        4,
-        "The actions of p, phi and R at a tangency with a' > 0",
-        ("s4-horizon-line", "s4-P-star", "e:pnew"),
-        str(oscillator()),
-        _actions(tau, edges, boxes),
-        2,
-        caption=(
-            "Near a tangency with $a' > 0$ the visible part of $V'$ lies between the axis $t = 0$ and the horizon "
-            r"$H$, where a flight lands with velocity zero. The projection $p$ folds $V'$ along $H$; $\phi$ gives the "
-            r"landing, and the rebound $R$ turns its velocity around. All panels show the same interval of $\sigma = "
-            r"\tau - \tau_*$; their vertical scales differ."
-        ),
-    )
+    return picture_of(4, str(oscillator()), _actions(tau, edges, boxes))
 
 
 def figure_6() -> Picture:
@@ -250,20 +229,7 @@ def figure_6() -> Picture:
         (sigma, (low, -0.2 * low)),
         (sigma, (0.1 * low, -0.6 * low)),
     ]
-    return Picture(
-        6,
-        "The actions of p, phi and R at a tangency with a' < 0",
-        ("s4b-sector", "s4b-T2-bounds", "s4b-continuous"),
-        str(oscillator()),
-        _actions(tau, edges, boxes),
-        2,
-        caption=(
-            "Near a tangency with $a' < 0$ the visible sector of $V'$ lies between the zero set $Z$ and the axis $t = "
-            r"0$. The landing map $\phi$ takes it to a thin region that touches the axis at $w_*$, so that every "
-            r"flight nearby lands to the right of $w_*$. All panels show the same interval of $\sigma = \tau - "
-            r"\tau_*$; their vertical scales differ."
-        ),
-    )
+    return picture_of(6, str(oscillator()), _actions(tau, edges, boxes))
 
 
 def figure_5() -> Picture:
@@ -274,37 +240,28 @@ def figure_5() -> Picture:
     surface = ImpactSurface(model, (low - 0.5, high + 2), (-3, 3), FINE)  # H is shifted Z
     jump = next(c.points for c in surface.discontinuities if np.hypot(*(c.points - [tau, 0.0]).T).min() < 1e-9)
     (curve, *_) = gammas_within(model, frame)
-    lines = leaves(model, frame, np.linspace(low, tau, 14)[1:-1].tolist())
-    lines += [
+    lines = [
+        *leaves(model, frame, np.linspace(low, tau, 14)[1:-1].tolist()),
         Line(jump, "jump", "P_*", "$P_*$", _share(jump, tau - 0.25), words="$P_*$: discontinuities of $G$"),
         Line(curve.points, "gamma", "gamma", r"$\gamma$", _share(curve.points, tau - 0.45)),
-    ]
-    lines += [
-        Line(
-            _orbit(model, curve.points, low + 0.05, share),
-            "orbit",
-            "orbit above gamma",
-            beads=True,
-            words="impacts of two orbits above $\\gamma$,\njoined in their order",
-        )
-        for share in (0.1, 0.3)
+        *(
+            Line(
+                _orbit(model, curve.points, low + 0.05, share),
+                "orbit",
+                "orbit above gamma",
+                beads=True,
+                words="impacts of two orbits above $\\gamma$,\njoined in their order",
+            )
+            for share in (0.1, 0.3)
+        ),
     ]
     near = curve.points[(curve.points[:, 0] < tau - 0.02) & (curve.points[:, 0] > tau - 0.2)]
     below = np.interp(near[:, 0], *jump[np.argsort(jump[:, 0])].T)
-    return Picture(
+    return picture_of(
         5,
-        "Degenerate chatter at a tangency with a' > 0",
-        ("t:t2-exists", "t:t2-sides", "s4-P-star"),
         str(model),
         [Panel(((low, high), (-0.1 * v, v)), lines=lines, dots=[Dot("$w_*$", (tau, 0.0))])],
         facts={"gamma_below_P": float((near[:, 1] / below).max()), "order": _order(near, tau)},
-        caption=(
-            r"Near a tangency with $a' > 0$ the curve $\gamma$ ends at $w_*$ with a quadratic tangency and is the "
-            "threshold: below it each orbit stays on its stable manifold and the mass comes to rest before $w_*$; "
-            "above it the impacts pass $w_*$ or cross $P_*$, where the map is discontinuous. The grey segments join "
-            "successive impacts and are no invariant curves."
-        ),
-        legend="upper right",
     )
 
 
@@ -338,8 +295,8 @@ def figure_7() -> Picture:
     start = tau - 0.25
     rest = np.stack([np.linspace(start, tau, 80)[:-1], np.zeros(79)], axis=1)
     epsilon = np.vstack([model_step(model, rest), [[tau, 0.0]]])
-    lines = leaves(model, frame, (tau + np.linspace(0.03, 0.85, 20)).tolist())
-    lines += [
+    lines = [
+        *leaves(model, frame, (tau + np.linspace(0.03, 0.85, 20)).tolist()),
         Line(
             epsilon,
             "epsilon",
@@ -360,19 +317,11 @@ def figure_7() -> Picture:
             Dot("$G(w_1)$", (float(epsilon[0, 0]), float(epsilon[0, 1]))),
         ],
     )
-    return Picture(
+    return picture_of(
         7,
-        "Chatter at a tangency with a' < 0",
-        ("t:foliate", "s4b-eps", "s4b-back"),
         str(model),
         [panel],
         facts={"order": float(np.polyfit(np.log(middle[:, 0] - tau), np.log(middle[:, 1]), 1)[0])},
-        caption=(
-            "Near a tangency with $a' < 0$ every weak impact is followed by complete chatter, also those left of "
-            "$w_*$, where the acceleration is still positive: the stable manifolds cross above $w_*$ and return to "
-            r"the axis. The map takes the interval from $w_1$ to $w_*$ to the curve $\varepsilon$, which touches the "
-            "axis at $w_*$."
-        ),
     )
 
 
@@ -385,21 +334,14 @@ def figure_8() -> Picture:
     (curve, *_) = gammas_within(model, frame)
     feet = [*np.linspace(-0.42, -0.1, 7).tolist(), *np.linspace(0.1, 0.58, 9).tolist()]
     words = r"stable manifolds $W^s_\tau$; hairpins are the ends of their loops"
-    lines = [replace(line, words=words) for line in leaves(model, frame, feet)]
-    lines.append(Line(curve.points, "gamma", "gamma", r"$\gamma$", _share(curve.points, -0.13)))
+    lines = [
+        *(replace(line, words=words) for line in leaves(model, frame, feet)),
+        Line(curve.points, "gamma", "gamma", r"$\gamma$", _share(curve.points, -0.13)),
+    ]
     near = curve.points[(curve.points[:, 0] < -0.02) & (curve.points[:, 0] > -0.2)]
-    caption = (
-        "At a negative swan point the acceleration at the wall has a double zero with $a'' < 0$. The curve "
-        r"$\gamma$ ends there with a cubic tangency. Stable manifolds of later times flatten as they pass above "
-        r"$w_*$ and then run down beside $\gamma$ in long narrow loops: each hairpin above $\gamma$ is the lower end "
-        "of a loop, at which one stable manifold comes down, turns, and goes up again."
-    )
-    return Picture(
+    return picture_of(
         8,
-        "Stable manifolds close to a negative swan point",
-        ("t:t3", "t:t3-others", "s5-saddle"),
         str(model),
         [Panel(((low, high), (-0.1 * v, v)), lines=lines, dots=[Dot("$w_*$", (0.0, 0.0))])],
         facts={"order": _order(near, 0.0)},
-        caption=caption,
     )

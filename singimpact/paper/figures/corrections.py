@@ -10,7 +10,7 @@ from singimpact.dynamics.orbit import orbit
 from singimpact.dynamics.unfolded_swan import swan_configuration
 from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.oscillator.wall_acceleration import acceleration
-from singimpact.paper.figures.panel import Dot, Line, Panel, Picture
+from singimpact.paper.figures.panel import Dot, Line, Panel, Picture, picture_of
 from singimpact.paper.trials import first_order_feet, orbits_beside_gamma
 
 DAMPING, CLEARANCE = 0.4, 0.9
@@ -67,8 +67,10 @@ def figure_B1() -> Picture:
         return Panel(box, f"${ends[n][1]}$", f"${label}$", title, [line], dots=dots)
 
     def moved(n: int, points: Array, title: str, label: str, high: float, at: Array) -> Panel:
-        lines = [Line(points, "orbit", label, words="orbit from rest at $A$")]
-        lines += [Line(np.array([[x, 0.0]]), "crossing", "impacts", beads=True, words="impacts") for x in at.tolist()]
+        lines = [
+            Line(points, "orbit", label, words="orbit from rest at $A$"),
+            *(Line(np.array([[x, 0.0]]), "crossing", "impacts", beads=True, words="impacts") for x in at.tolist()),
+        ]
         names = zip("AX", (ends[n][0][0], ends[n][0][2]), strict=True)
         return Panel(
             (_box((t, s)[n]), (-0.12 * high, high)),
@@ -93,16 +95,7 @@ def figure_B1() -> Picture:
         "impacts": float(hits.size),
         "bends": _bends(places, height * factor, landed[0]),
     }
-    caption = (
-        r"A linear oscillator is a ball, exactly. (a), (c): the wall acceleration of a damped oscillator and "
-        r"its orbit from rest at $A$. (b), (d): the same in $s = \tan(\omega_d t)/\omega_d$ and $y = "
-        r"(x-c)\,e^{\beta t}/\cos(\omega_d t)$. Between impacts $y'' = A(s) = e^{\beta t}\cos^3(\omega_d "
-        r"t)\,a_c$: there is no spring and no damping, and the restitution is the same. The dots are the "
-        r"impacts."
-    )
-    return Picture(
-        "B1", "A linear oscillator and the ball that it is", ("b:gauge",), str(model), panels, 2, facts, caption
-    )
+    return picture_of("B1", str(model), panels, facts)
 
 
 def _bends(s: Array, y: Array, end: float) -> float:
@@ -139,23 +132,17 @@ def figure_B2() -> Picture:
         low = box[0]
         start = -0.8 if slope == 1 else -2.2
         guide = np.array([[x, start + slope * (x - low[1])] for x in low])
-        lines = [Line(guide, "before", f"slope {slope}", f"slope {slope}", 0.35, words=("slopes 1 and 2"))]
-        lines += [Line(points, "orbit", "errors", beads=True, words="five oscillators, $r = 1/2$") for points in rows]
+        lines = [
+            Line(guide, "before", f"slope {slope}", f"slope {slope}", 0.35, words="slopes 1 and 2"),
+            *(Line(points, "orbit", "errors", beads=True, words="five oscillators, $r = 1/2$") for points in rows),
+        ]
         return Panel(box, r"$\log_{10} H$", r"$\log_{10}$ of the error", title, lines)
 
-    return Picture(
+    return picture_of(
         "B2",
-        "How fast unfolded swans tend to the universal one",
-        ("b:first-order-foot", "b:first-order-measured"),
         "; ".join(model.name for model in first_order_feet.MODELS),
         [panel("(a) $|X_H - X|$", left, 1), panel("(b) without the known term", right, 2)],
-        2,
         facts,
-        (
-            r"The foot $X_H$ of an unfolded swan, in units of the half distance $H$ of $A$ and $B$, against the "
-            r"foot $X$ of the universal model, for five oscillators. (a) $|X_H - X|$ falls like $H$. (b) With the "
-            r"term $-\frac{1}{10}\chi(X^2 - 1)H$ taken off, $\chi = f_v + 2a'''/(3a'')$, it falls like $H^2$."
-        ),
     )
 
 
@@ -183,19 +170,11 @@ def figure_B3() -> Picture:
             mark = np.array([[_value(rate), orbits.slope]])
             lines.append(Line(mark, "crossing", "true orbit", beads=True, words="slopes of true orbits"))
             facts[f"{start.name}, r = {rate}"] = orbits.slope - log(1 / orbits.lambda_) / log(orbits.mu)
-    return Picture(
+    return picture_of(
         "B3",
-        "The threshold of complete chatter is Hoelder continuous",
-        ("b:holder-bounds", "b:holder"),
         "; ".join(start.name for start in orbits_beside_gamma.STARTS),
         [Panel(((0.0, 1.0), (0.1, 1.05)), "$r$", r"$\alpha$", lines=lines)],
-        facts=facts,
-        caption=(
-            r"Below $\gamma$, at the relative distance $\delta$, chatter ends a time proportional to "
-            r"$\delta^\alpha$ before $\tau_*$, $\alpha = \ln(1/\lambda)/\ln\mu$. The exponent lies between its "
-            r"limit $3/(3+2j)$ as $r \to 1$ and 1, for every contact order $j$ and every $r$. The dots are "
-            r"measured on orbits of six oscillators at $j = 1$ and 2."
-        ),
+        facts,
     )
 
 

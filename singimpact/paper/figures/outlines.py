@@ -11,7 +11,7 @@ from singimpact.flights.impact_map import first_hit
 from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.paper.figures.contact_figures import launch_and_landing, oscillator
-from singimpact.paper.figures.panel import Dot, Line, Panel, Picture, Point
+from singimpact.paper.figures.panel import Dot, Line, Panel, Picture, Point, picture_of
 from singimpact.paper.figures.swan_figures import box, half, negative, positive, ring
 from singimpact.surface.curve import Curve
 from singimpact.surface.impact_surface import ImpactSurface
@@ -34,8 +34,8 @@ def figure_1() -> Picture:
         position = fold[int(share * (len(fold) - 1))]
         over = np.array([position * [1, 1, 0], position + np.array([0, 0, 0.25])])
         words = "lines $w = $ const. that touch the surface on $H$"
-        lines.append(Line(over, "hidden", f"line over w_{n + 1}", words=words))
-        lines.append(
+        lines += [
+            Line(over, "hidden", f"line over w_{n + 1}", words=words),
             Line(
                 position[None],
                 "orbit",
@@ -43,21 +43,9 @@ def figure_1() -> Picture:
                 f"$w_{n + 1}$",
                 beads=True,
                 words="touching points",
-            )
-        )
-    return Picture(
-        1,
-        "The impact surface and its horizon",
-        ("s2-smooth", "s2-horizon", "s2-two-sheets"),
-        str(model),
-        [Panel(((LEFT, RIGHT), (LOW, HIGH)), mesh=_mesh(), lines=lines)],
-        caption=(
-            r"The impact surface: for each launch time $\tau$ and flight time $t$ the velocity $v$ with which the "
-            "flight comes back to the wall. Over states below $P$ it has two sheets, which meet in the fold $H$, the "
-            "horizon, where flights land with velocity zero: a vertical line over a state $w_1$, $w_2$ or $w_3$ of "
-            "$P$ touches the surface there. $P$ is the image of $H$ in the plane of states."
-        ),
-    )
+            ),
+        ]
+    return picture_of(1, str(model), [Panel(((LEFT, RIGHT), (LOW, HIGH)), mesh=_mesh(), lines=lines)])
 
 
 def _shown(points: Array, t: Array) -> Array:
@@ -128,23 +116,14 @@ def figure_2() -> Picture:
         }
         together = [rows] if change.kind != "swallowtail" else [[row] for row in rows]  # its tip moves away at once
         panels += _equally_high([panel for curve in together for panel in _panels(letter, change, curve)])
-    return Picture(
+    return picture_of(
         2,
-        "The three generic transitions of the outline",
-        ("s2-fold-cusp-forms", "s6-lips"),
         str(damped()),
         panels,
-        3,
         facts,
-        (
-            "How the apparent outline $P$ changes as one number of the model moves through a value where two cusps "
-            "(dots) meet. (a) Lips: a closed piece with two cusps shrinks to a point at the frequency $w_0$ = "
-            f"{CHANGES[0].value:.6f} and is gone. (b) Beaks: two cusps meet at $w_0$ = {CHANGES[1].value:.6f} and two "
-            "smooth branches are left. (c) Swallowtail: two cusps and a crossing merge at the clearance $c_0$ = "
-            rf"{CHANGES[2].value:g}. Vertically $v - q(\tau)$ is shown, $q$ a polynomial fitted to the branches (of "
-            "degree 3 in (a) and (b), 1 in (c)), since branches that nearly coincide are not seen apart otherwise. In "
-            "each row the scales are equal, and in (c) the window moves with the tip."
-        ),
+        lips=f"{CHANGES[0].value:.6f}",
+        beaks=f"{CHANGES[1].value:.6f}",
+        swallowtail=f"{CHANGES[2].value:g}",
     )
 
 
@@ -256,20 +235,7 @@ def figure_9() -> Picture:
             )
         )
         facts[f"cusps_{kind}"] = float(sum(len(c.marked("cusp")) for c in swan.surface.outline if c.closed))
-    return Picture(
-        9,
-        "Graphs of a and the outlines of unfolded swans",
-        ("s6-d", "s6-lips"),
-        "x'' + x = cos 2t",
-        panels,
-        2,
-        facts,
-        (
-            "A swan point opens as the clearance $c$ passes $c_0$ = -1 (a, positive) or 1 (b, negative). Left: the "
-            "acceleration at the wall, $a_c$, gets two zeros $A$ and $B$. Right: a closed piece of the apparent "
-            "outline $P$ is born, which touches the axis at $A$ and $B$ and has a cusp at either end, $D'$ and $C''$."
-        ),
-    )
+    return picture_of(9, "x'' + x = cos 2t", panels, facts)
 
 
 def figure_10() -> Picture:
@@ -288,8 +254,8 @@ def figure_10() -> Picture:
         lines = [
             Line(np.array([[0.0, 1.1 * low], [0.0, 1.1 * high]]), "axis", "t = 0"),
             Line(curve, "P", "section", words="section of $V'$: $v$ against flight time $t$"),
+            *(Line(piece, "graph", "first hits", words="first hits with $v > 0$") for piece in _visible(tau, curve)),
         ]
-        lines += [Line(piece, "graph", "first hits", words="first hits with $v > 0$") for piece in _visible(tau, curve)]
         letter = NAMED.get(point)
         panels.append(
             Panel(
@@ -301,21 +267,7 @@ def figure_10() -> Picture:
                 dots=([] if letter is None else [Dot(f"${letter}$", _on(letter))]),
             )
         )
-    return Picture(
-        10,
-        "Sections of V' at constant tau near a positive swan (sigma in half distances of A and B)",
-        ("s6-sections", "s6p-BE", "s6p-AE"),
-        str(swan.model),
-        panels,
-        4,
-        caption=(
-            r"Sections of $V'$ for launch times $\tau = \tau_* + \sigma$, with $\sigma$ in half distances of $A$ and "
-            r"$B$: the velocity $v$ of the flight that is back at the wall after the time $t$. A state $(\tau, v)$ has "
-            "as many returns as the horizontal line at $v$ has crossings with $t > 0$; the blue part is the first of "
-            "them. To the right of $D$ the section has two folds, whose flights land with velocity zero. The numbers "
-            "on the vertical axes show that each panel has a scale of its own."
-        ),
-    )
+    return picture_of(10, str(swan.model), panels)
 
 
 def _on(letter: str) -> tuple[float, float]:

@@ -1,11 +1,15 @@
 """The data of a figure before it is drawn: panels of lines, regions and letters."""
 
+import tomllib
 from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from singimpact.algebra.numbers import Array
+from singimpact.documents.rendering import environment
 from singimpact.scenes.style import SHADE
 
 ARCS = 500  # points across, for invariant arcs: half of what a panel has, less than the width of a line
@@ -114,6 +118,31 @@ class Picture:
                 for panel in self.panels
             ],
         }
+
+
+CAPTIONS = Path(__file__).with_name("captions.toml")
+
+
+@cache
+def _captions() -> dict[str, dict[str, Any]]:
+    return tomllib.loads(CAPTIONS.read_text(encoding="utf-8"))
+
+
+def picture_of(
+    number: int | str, model: str, panels: list[Panel], facts: dict[str, float] | None = None, **values: str
+) -> Picture:
+    """A figure with its title, claims and caption from `captions.toml`.
+
+    Parameters
+    ----------
+    number, model, panels, facts : as in `Picture`. values : texts that stand in its caption, beside `facts`.
+    """
+    words = dict(_captions()[str(number)])
+    caption = environment().from_string(words.pop("caption")).render(facts=facts, **values)
+    claims = tuple(words.pop("claims"))
+    return Picture(
+        number, claims=claims, model=model, panels=panels, facts=facts or {}, caption=" ".join(caption.split()), **words
+    )
 
 
 def arc(points: Array, start: Point, end: Point, avoid: Point) -> Array:

@@ -9,7 +9,7 @@ from singimpact.algebra.numbers import Array
 from singimpact.dynamics.unfolded_swan import SwanConfiguration, swan_configuration
 from singimpact.impact_oscillator import linear
 from singimpact.paper.figures.contact_figures import reset
-from singimpact.paper.figures.panel import Dot, Line, Panel, Picture, Point, Region, arc
+from singimpact.paper.figures.panel import Dot, Line, Panel, Picture, Point, Region, arc, picture_of
 from singimpact.scenes.style import WHITE
 from singimpact.surface.impact_surface import ImpactSurface
 
@@ -100,20 +100,7 @@ def figure_11() -> Picture:
             )
         ],
     )
-    return Picture(
-        11,
-        "Positive swan: the visible part S of V'",
-        ("s6p-BE", "s6p-AE", "s6-lips"),
-        str(swan.model),
-        [panel],
-        facts={"tangencies": 2.0},
-        caption=(
-            "The unfolded positive swan on the impact surface. The horizon $H$ and the zero set $Z$ are closed curves "
-            r"through the tangency points $A$ and $B$, each the image of the other under $(\tau, t) \to (\tau + t, "
-            "-t)$. Flights of the grey part $S$ hit the wall for the first time; $D$ and $C$ are the cusp points of "
-            r"$p$ and $\phi$, and $E$ is the flight from rest to rest."
-        ),
-    )
+    return picture_of(11, str(swan.model), [panel], facts={"tangencies": 2.0})
 
 
 def _lettered(swan: SwanConfiguration) -> list[Line]:
@@ -151,18 +138,7 @@ def figure_14() -> Picture:
             Region(hidden_negative(), WHITE),
         ],
     )
-    return Picture(
-        14,
-        "Negative swan: what is visible of V'",
-        ("s6n-visible", "s6n-corr"),
-        str(swan.model),
-        [panel],
-        caption=(
-            "The unfolded negative swan on the impact surface: all of $t > 0$ is visible but the loop through $A$, "
-            "$D$, $C$ and $B$. The arc $AD$ of the horizon is grazed by first hits, and hides the sheet behind it as "
-            "far as the shadow $DC$. The map is discontinuous at the states of that arc."
-        ),
-    )
+    return picture_of(14, str(swan.model), [panel])
 
 
 IMAGES = r"images of the visible part $\mathcal{S}$"
@@ -231,20 +207,7 @@ def figure_12() -> Picture:
         [Region(arc_phi, label=r"$\mathcal{S}''$", words=IMAGES, place=(swan.B - 0.25 * size, -0.11 * v))],
     )
     panels = [first[0], second[0], first[1], second[1]]
-    return Picture(
-        12,
-        "Images of the positive swan under p and phi",
-        ("s6p-BE", "s6p-AE", "p:phising-cusp"),
-        str(swan.model),
-        panels,
-        2,
-        caption=(
-            "The images of the visible part $S$ of the positive swan: under $p$, the states that hit before they "
-            r"leave the swan, and under $\phi$, their landings. Both are bounded by arcs of the same curve $P$ with "
-            "cusps $D'$ and $C''$. The two branches of $P$ are closer than a line's width near the cusps; below, the "
-            f"velocities are magnified {ZOOM:g} times."
-        ),
-    )
+    return picture_of(12, str(swan.model), panels, zoom=f"{ZOOM:g}")
 
 
 def figure_15() -> Picture:
@@ -282,19 +245,5 @@ def figure_15() -> Picture:
         [Dot("$A''$", images["A"]), Dot("$B''=D''$", images["B"]), Dot("$E''$", images["E"])],
         [],
     )
-    return Picture(
-        15,
-        "Images of the negative swan under p and phi",
-        ("s6n-maps", "s6n-cusp", "s6n-AB"),
-        str(swan.model),
-        [first[0], second[0], first[1], second[1]],
-        2,
-        {"gap": float(np.hypot(*(jump[0] - np.array(images["D"]))))},
-        (
-            r"The plane of states is cut along $\delta$, the image of the grazing arc $AD$ under $p$. Landing after "
-            r"the graze, $\phi$ takes one edge of the cut to the interval $A''D''$ and the other, which passes the "
-            "graze and hits on the shadow, to the arc $D''C''$. The arc $CB$ of the zero set lands on the same arc, "
-            "which is drawn dotted and dashed. The two branches of $P$ are closer than a line's width near the "
-            f"cusps; below, the velocities are magnified {ZOOM:g} times."
-        ),
-    )
+    panels, gap = [first[0], second[0], first[1], second[1]], float(np.hypot(*(jump[0] - np.array(images["D"]))))
+    return picture_of(15, str(swan.model), panels, {"gap": gap}, zoom=f"{ZOOM:g}")

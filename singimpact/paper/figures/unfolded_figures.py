@@ -10,7 +10,7 @@ from singimpact.dynamics.growth import held
 from singimpact.dynamics.invariant_arcs import before, gammas_within, stable_manifold
 from singimpact.flights.rebound_law import rebound
 from singimpact.paper.figures.contact_figures import rebounded, reset
-from singimpact.paper.figures.panel import ARCS, Dot, Line, Panel, Picture, Region, arc
+from singimpact.paper.figures.panel import ARCS, Dot, Line, Panel, Picture, Region, arc, picture_of
 from singimpact.paper.figures.swan_figures import box, half, negative, positive, ring, shadow
 from singimpact.surface.curve import Window
 
@@ -30,8 +30,8 @@ def figure_13() -> Picture:
     for foot in np.linspace(swan.A, swan.B, LEAVES + 2)[1:-1].tolist():
         lines += [Line(curve.points, "manifold", "leaf") for curve in stable_manifold(swan.model, frame, repr(foot))]
     curve = next(gamma for gamma in gammas_within(swan.model, frame) if abs(gamma.points[0, 0] - swan.B) < 1e-6)
-    lines.append(Line(curve.points, "gamma", "gamma", r"$\gamma$", 0.55))
-    lines.append(
+    lines += [
+        Line(curve.points, "gamma", "gamma", r"$\gamma$", 0.55),
         Line(
             _epsilon(),
             "epsilon",
@@ -39,8 +39,8 @@ def figure_13() -> Picture:
             r"$\varepsilon$",
             0.85,
             words=r"$\varepsilon$: image of the interval from $E'$ to $A$",
-        )
-    )
+        ),
+    ]
     facts = {"gamma_end": float(curve.points[-1, 0]), "E": places["E"][0], "A": swan.A, "N": float(swan.N[0])}
     panel = Panel(
         window,
@@ -48,20 +48,7 @@ def figure_13() -> Picture:
         dots=[Dot("$A$", places["A"]), Dot("$B$", places["B"]), Dot("$E'$", places["E"]), Dot("$N$", swan.N)],
         regions=[Region(edge, words=r"$\mathcal{S}'$: states that hit before they leave the swan")],
     )
-    return Picture(
-        13,
-        "Invariant foliation of S' at an unfolded positive swan",
-        ("s6p-gamma", "s6p-eps", "t:t1"),
-        str(swan.model),
-        [panel],
-        facts={**facts, "size": size},
-        caption=(
-            r"The curve $\gamma$, which touches the axis at $B$, divides the states $S'$ of an unfolded positive swan. "
-            "Below it each orbit stays on its stable manifold, and the mass comes to rest between $A$ and $B$; above "
-            r"it the impacts leave $S'$. The map takes the interval from $E'$ to $A$ to the curve $\varepsilon$, which "
-            "ends on $P$ at $N$."
-        ),
-    )
+    return picture_of(13, str(swan.model), [panel], facts={**facts, "size": size})
 
 
 def _epsilon() -> Array:
@@ -134,21 +121,7 @@ def figure_16() -> Picture:
             box(swan, -4, 4.2, -0.25 * v, 1.1 * v), title=r"after $R$", lines=third, dots=[*letters, Dot("$Q$", swan.Q)]
         ),
     ]
-    return Picture(
-        16,
-        "The action of the map on the segments of a negative swan",
-        ("s6n-maps", "s6n-AB", "s2-discontinuity"),
-        str(model),
-        panels,
-        2,
-        caption=(
-            "How the map acts on five segments at an unfolded negative swan. The two edges 2 and 3 of the cut are one "
-            r"arc $\delta$, and the map is discontinuous there: 2 goes to the interval $A''D''$ of the axis, 3 to the "
-            "arc from $D''$ to $C''$. The segment 4 goes to that same arc. Edge 3 on the left and the image of 4 are "
-            "drawn beside their true places, so that they can be seen. The rebound $R$ turns the velocities around "
-            "and halves them, and $C''$ becomes $Q$."
-        ),
-    )
+    return picture_of(16, str(model), panels)
 
 
 def _landed_right(length: float) -> Array:
@@ -164,36 +137,35 @@ def figure_17() -> Picture:
     window = box(swan, -4.2, 5.6, -0.1 * v, v)
     frame = Window((window[0][0] - size, window[0][1]), (0.0, 1.3 * v), 1 / ARCS)
     manifold = stable_manifold(swan.model, frame, repr(swan.X))
-    lines = [
-        Line(curve.points, "manifold", "beyond X", words="stable manifolds of times after $X$")
-        for foot in (1.02, 1.08, 1.16)
-        for curve in stable_manifold(swan.model, frame, repr(swan.X + (foot - 1) * 5 * size))
-    ]
-    loops = _loops([curve.points for curve in manifold], swan.A)
-    lines += _foot_and_lambda(manifold[0].points, swan.A, swan.Q)
-    lines += [
-        Line(
-            branch,
-            "loop",
-            f"G^-{n}(lambda), {side} branch",
-            r"$G^{-1}(\lambda)$" if label else "",
-            0.45,
-            words="$W^s(X)$: stable manifold of $X$",
-        )
-        for n, branches in enumerate(loops, 1)
-        for side, branch, label in (("right", branches[0], n == 1), ("left", branches[1], False))
-    ]
-    lines += [
-        Line(points, "preimage", f"G^-{n}(delta)", at=0.6, words=rf"$G^{{-n}}(\delta)$, $n \leq {GENERATIONS}$")
-        for n, points in enumerate(_preimages(frame), 1)
-    ]
-    lines.append(Line(delta(), "jump", "delta", r"$\delta$", 0.75, words=r"$\delta$: $G$ is discontinuous"))
-    arcs = gammas_within(swan.model, frame)
-    lines.append(Line(arcs[0].points, "gamma", "gamma", r"$\gamma$", 0.35))
+    loops, arcs = _loops([curve.points for curve in manifold], swan.A), gammas_within(swan.model, frame)
     across = rebounded(reset(swan.model, shadow()), 0.5)
-    lines.append(
-        Line(across, "epsilon", "R(D''C'')", r"$R(D''C'')$", 0.45, words=r"$R(D''C'')$: image of $\delta$ from above")
-    )
+    lines = [
+        *(
+            Line(curve.points, "manifold", "beyond X", words="stable manifolds of times after $X$")
+            for foot in (1.02, 1.08, 1.16)
+            for curve in stable_manifold(swan.model, frame, repr(swan.X + (foot - 1) * 5 * size))
+        ),
+        *_foot_and_lambda(manifold[0].points, swan.A, swan.Q),
+        *(
+            Line(
+                branch,
+                "loop",
+                f"G^-{n}(lambda), {side} branch",
+                r"$G^{-1}(\lambda)$" if label else "",
+                0.45,
+                words="$W^s(X)$: stable manifold of $X$",
+            )
+            for n, branches in enumerate(loops, 1)
+            for side, branch, label in (("right", branches[0], n == 1), ("left", branches[1], False))
+        ),
+        *(
+            Line(points, "preimage", f"G^-{n}(delta)", at=0.6, words=rf"$G^{{-n}}(\delta)$, $n \leq {GENERATIONS}$")
+            for n, points in enumerate(_preimages(frame), 1)
+        ),
+        Line(delta(), "jump", "delta", r"$\delta$", 0.75, words=r"$\delta$: $G$ is discontinuous"),
+        Line(arcs[0].points, "gamma", "gamma", r"$\gamma$", 0.35),
+        Line(across, "epsilon", "R(D''C'')", r"$R(D''C'')$", 0.45, words=r"$R(D''C'')$: image of $\delta$ from above"),
+    ]
     dots = [
         Dot("$A$", (swan.A, 0.0)),
         Dot("$B=D''$", (swan.B, 0.0)),
@@ -204,22 +176,7 @@ def figure_17() -> Picture:
     facts = {"X": swan.X, "Q": swan.Q[0], "pieces": float(len(manifold)), "generations": float(len(loops))}
     facts |= _accumulation(loops, arcs[0].points, swan.projected["D"][1] / 2)
     panels = [Panel(window, title="(a)", lines=lines, dots=dots), _beside_gamma(lines, arcs[0].points, window[1][1])]
-    return Picture(
-        17,
-        "Dynamics created at the unfolding of a negative swan",
-        ("s6n-X", "s6n-tangent", "s6n-loops", "s6n-accumulate"),
-        str(swan.model),
-        panels,
-        1,
-        facts,
-        (
-            "What an unfolded negative swan creates. The orbit from $A$ lands at $Q$ and comes to rest at $X$, so the "
-            r"stable manifold of $X$ contains the arc $\lambda$ from $Q$ to $A$. The inverse images of $\lambda$ are "
-            r"loops at $A$ that wrap around $\delta$ and its inverse images; they accumulate on $\gamma$, the "
-            "threshold of complete chatter, each nearer by one and the same factor in the limit. (b) The lower left "
-            r"of (a), with the distance from $\gamma$ along $\tau$ instead of $\tau$: there the loops are seen apart."
-        ),
-    )
+    return picture_of(17, str(swan.model), panels, facts)
 
 
 def _beside_gamma(lines: list[Line], gamma: Array, height: float) -> Panel:

@@ -25,13 +25,13 @@ class Change(NamedTuple):
     height: Any
 
 
-def _rate(expression: Any, acceleration: Any) -> Any:
+def _rate(expression: sympy.Expr, acceleration: sympy.Expr) -> Any:
     """d/ds along the motion; L stands for s^j, so dL/ds = j L/s."""
     parts = {s: 1, L: j * L / s, x: y, y: acceleration}
     return sum((sympy.diff(expression, letter) * rate for letter, rate in parts.items()), sympy.Integer(0))
 
 
-def transformed(change: Change, acceleration: Any) -> Any:
+def transformed(change: Change, acceleration: sympy.Expr) -> Any:
     """d^2 Y/dS^2 along x'' = acceleration, as a rational function of h.
 
     Examples
@@ -44,7 +44,7 @@ def transformed(change: Change, acceleration: Any) -> Any:
     return sympy.cancel(_rate(speed, acceleration) / tempo)
 
 
-def truncated(expression: Any) -> Any:
+def truncated(expression: sympy.Expr) -> Any:
     """The part of degree 0 and 1 in h of a rational function of h that is finite at h = 0."""
     rate = sympy.diff(expression, h).subs(h, 0)
     return sympy.expand(sympy.cancel(expression.subs(h, 0)) + h * sympy.cancel(rate))
@@ -94,7 +94,7 @@ def swan_removal() -> Change:
     return _solved(tried, swan_acceleration(), goal)
 
 
-def _solved(tried: Change, motion: Any, goal: Any) -> Change:
+def _solved(tried: Change, motion: sympy.Expr, goal: sympy.Expr) -> Change:
     """The change with the alpha and beta that make the transformed motion the goal to first order in h.
 
     Raises

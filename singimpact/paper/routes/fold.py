@@ -17,7 +17,7 @@ _left = sympy.Symbol("s", negative=True)  # the visible part lies in s < 0
 e, w = sympy.symbols("e w")  # in certificates: a small step, and the square root of Q_r
 
 
-def in_k(expression: Any) -> Any:
+def in_k(expression: sympy.Expr) -> Any:
     """An expression in a' rewritten with k = a'/6."""
     found = sympy.expand(expression.subs(a_symbol(1), 6 * k))
     if found != expression:
@@ -26,14 +26,14 @@ def in_k(expression: Any) -> Any:
 
 
 @equation("e:pnew")
-def p() -> tuple[Any, Any]:
+def p() -> tuple[sympy.Expr, sympy.Expr]:
     """p at a tangency point, to second order in (sigma, t) [e:pnew]."""
     first, second = p_c(2)
     return first, in_k(at_contact(second, 1))  # the first component, sigma + t, has no coefficient of a_c
 
 
 @equation("e:phinew")
-def phi() -> tuple[Any, Any]:
+def phi() -> tuple[sympy.Expr, sympy.Expr]:
     """phi at a tangency point, to second order in (sigma, t) [e:phinew]."""
     first, second = phi_c(2)
     found = first, in_k(at_contact(second, 1))
@@ -42,7 +42,7 @@ def phi() -> tuple[Any, Any]:
 
 
 @equation("s4-horizon-line")
-def horizon() -> tuple[Any, Any]:
+def horizon() -> tuple[sympy.Expr, sympy.Expr]:
     """(t on the horizon as a function of sigma, v on its image): dv_c/dt = 0 to first order, then p."""
     _, velocity = p()
     slope = sympy.Poly(sympy.diff(velocity, t), t)
@@ -59,13 +59,13 @@ def fold_coordinate() -> Any:
     return t - line
 
 
-def in_fold_coordinates(expression: Any) -> Any:
+def in_fold_coordinates(expression: sympy.Expr) -> Any:
     """An expression in (sigma, t) rewritten in (sigma, eta)."""
     return sympy.expand(expression.subs(t, t + eta - fold_coordinate()))
 
 
 @equation("s4-fold-p")
-def p_folded() -> tuple[Any, Any]:
+def p_folded() -> tuple[sympy.Expr, sympy.Expr]:
     """p in the coordinates (sigma, eta)."""
     first, second = p()
     folded = in_fold_coordinates(second)
@@ -74,19 +74,19 @@ def p_folded() -> tuple[Any, Any]:
 
 
 @equation("s4-psi")
-def psi(u: Any, w: Any) -> tuple[Any, Any]:
+def psi(u: sympy.Expr, w: sympy.Expr) -> tuple[sympy.Expr, sympy.Expr]:
     """psi(u, w): takes the image of the horizon, w = (9/4) k u^2, to w = 0."""
     _, outline = horizon()
     return u, sympy.expand(w - outline.subs(sigma, u))
 
 
-def _outline_off(u: Any, velocity: Any) -> Any:
+def _outline_off(u: sympy.Expr, velocity: sympy.Expr) -> sympy.Expr:
     """The second component of psi."""
     return psi(u, velocity)[1]
 
 
 @equation("e:pdef")
-def psi_p() -> tuple[Any, Any]:
+def psi_p() -> tuple[sympy.Expr, sympy.Expr]:
     """psi o p in (sigma, eta), to second order: the fold form [e:pdef]."""
     folded = psi(*p_folded())
     substitution(At(_outline_off(X, Y), {X: sigma, Y: p_folded()[1]}), folded[1])
@@ -94,7 +94,7 @@ def psi_p() -> tuple[Any, Any]:
 
 
 @equation("e:defq")
-def psi_q() -> tuple[Any, Any]:
+def psi_q() -> tuple[sympy.Expr, sympy.Expr]:
     """psi o q with q = R o phi, in (sigma, eta), to second order [e:defq]."""
     first, second = phi()
     found = psi(in_fold_coordinates(first), in_fold_coordinates(-r * second))
@@ -115,7 +115,7 @@ def Q_r() -> Any:
 
 
 @equation("e:hdef")
-def h() -> tuple[Any, Any]:
+def h() -> tuple[sympy.Expr, sympy.Expr]:
     """h = p^{-1} o q in (sigma, eta) on the visible part, to leading order [e:hdef].
 
     A first hit comes before the horizon, and t grows with eta, so the new eta is the negative root.
@@ -124,7 +124,7 @@ def h() -> tuple[Any, Any]:
 
 
 @equation("s4-blowup")
-def h_blown_up() -> tuple[Any, Any]:
+def h_blown_up() -> tuple[sympy.Expr, sympy.Expr]:
     """h' in (s, m), (sigma, eta) = (s, s m), at s = 0: (s'/s, m') on the visible part s < 0, m > 1/2."""
     first, second = h()
     rate = sympy.cancel(first.subs({sigma: s, eta: s * m}) / s)
@@ -137,7 +137,7 @@ def h_blown_up() -> tuple[Any, Any]:
     return rate, image
 
 
-def in_root(expression: Any) -> Any:
+def in_root(expression: sympy.Expr) -> Any:
     """An expression with w for the root of Q_r(1, m)."""
     root = sympy.sqrt(Q_at_one())
     return sympy.together(expression.subs({root: w, 1 / root: 1 / w}))
@@ -162,7 +162,7 @@ def fixed_point_equation() -> Any:
 
 
 @equation("e:meq")
-def fixed_point_factors() -> tuple[Any, Any]:
+def fixed_point_factors() -> tuple[sympy.Expr, sympy.Expr]:
     """(m - 3/2 and the cubic) whose product is the fixed-point polynomial [e:meq].
 
     The cubic is (m - 1/2)^2 (m + 3/2) - 2 r m.
@@ -193,7 +193,7 @@ def N_r() -> Any:
     return found
 
 
-def _is_slope(slope: Any) -> None:
+def _is_slope(slope: sympy.Expr) -> None:
     """Leave the certificate that dm'/dm is `slope`: ((m' + slope e) s'/s)^2 = Q_r(1, m + e) to first order in e."""
     rate, image = h_blown_up()
     moved = At((Y + X * e) ** 2 * rate.subs(m, m + e) ** 2, {Y: in_root(image), X: in_root(slope)})
@@ -221,7 +221,7 @@ def N_r_at_fixed_points() -> Any:
 
 
 @equation("s4-Dh-form")
-def Dh_blown_up() -> Any:
+def Dh_blown_up() -> sympy.MatrixBase:
     """Dh'(0, m): lower triangular, since s = 0 is invariant; the entry * depends on the O(3) terms."""
     new = sympy.expand(psi_q()[0].subs({sigma: s, eta: s * m}))  # s'
     first = [sympy.diff(new, letter).subs(s, 0) for letter in (s, m)]

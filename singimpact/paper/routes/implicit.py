@@ -20,12 +20,12 @@ sigma, t, v, r = sympy.symbols("sigma t v r")
 X, Y = sympy.symbols("X Y")  # the first and the second component of what a map is applied to, in certificates
 
 
-def a_symbol(order: int) -> Any:
+def a_symbol(order: int) -> sympy.Expr:
     """The symbol of the order-th derivative of a_c at tau_*."""
     return sympy.Symbol(derivative_name(order))
 
 
-def f_symbol(i: int, k: int) -> Any:
+def f_symbol(i: int, k: int) -> sympy.Expr:
     """The symbol of the derivative of f, i times by x and k times by x', at (c, 0)."""
     return sympy.Symbol(f"f_{i}{k}")
 
@@ -107,7 +107,7 @@ def v_c(order: int = 3) -> Any:
     return solution
 
 
-def composed(expression: Any, velocity: Any, order: int) -> Any:
+def composed(expression: sympy.Expr, velocity: sympy.Expr, order: int) -> Any:
     """A polynomial in (sigma, t, v) with v replaced, cut after total degree `order` in (sigma, t)."""
     names = sorted((expression.free_symbols | velocity.free_symbols) - {sigma, t, v}, key=str)
     domain = ring([sigma, t, *names], sympy.QQ)[0]
@@ -117,7 +117,7 @@ def composed(expression: Any, velocity: Any, order: int) -> Any:
     return value.as_expr()
 
 
-def at_launch(expression: Any, order: int) -> Any:
+def at_launch(expression: sympy.Expr, order: int) -> Any:
     """A polynomial in (sigma, t, v) on the sheet v = v_c, to total degree `order`."""
     return composed(expression, v_c(order), order)
 
@@ -131,13 +131,13 @@ def slope_at_rest() -> Any:
 
 
 @equation("e:proj")
-def p_c(order: int = 3) -> tuple[Any, Any]:
+def p_c(order: int = 3) -> tuple[sympy.Expr, sympy.Expr]:
     """p_c: (sigma, t) -> (sigma, v_c) [e:proj]."""
     return sigma, v_c(order)
 
 
 @equation("e:phi")
-def phi_c(order: int = 3) -> tuple[Any, Any]:
+def phi_c(order: int = 3) -> tuple[sympy.Expr, sympy.Expr]:
     """phi_c: (sigma, t) -> (sigma + t, xdot_c at t) [e:phi].
 
     The impact velocity is found the long way, by differentiating x_c = c + t y_c and putting v = v_c.

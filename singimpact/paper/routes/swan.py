@@ -15,7 +15,7 @@ s, m, mbar, ell = sympy.symbols("s m mbar ell")
 e = sympy.Symbol("e")  # a small step, in certificates
 
 
-def _blown_up(images: tuple[Any, Any]) -> tuple[Any, Any]:
+def _blown_up(images: tuple[sympy.Expr, sympy.Expr]) -> tuple[sympy.Expr, sympy.Expr]:
     """(first/s, second/(ell s^3)) of a map of (sigma, t) at a swan point, in (s, m)."""
     swan = [at_contact(part, 2) for part in images]
     first, second = (part.subs(a_symbol(2), -24 * ell).subs({sigma: s, t: s * m}) for part in swan)
@@ -26,13 +26,13 @@ def _blown_up(images: tuple[Any, Any]) -> tuple[Any, Any]:
 
 
 @equation("e:pdeg3")
-def p_blown_up() -> tuple[Any, Any]:
+def p_blown_up() -> tuple[sympy.Expr, sympy.Expr]:
     """p: (s, m) -> (s first, ell s^3 second) at s = 0, as (first, second) [e:pdeg3]."""
     return _blown_up(p_c(3))
 
 
 @equation("s5-phi")
-def phi_blown_up() -> tuple[Any, Any]:
+def phi_blown_up() -> tuple[sympy.Expr, sympy.Expr]:
     """phi: (s, m) -> (s first, ell s^3 second) at s = 0, as (first, second)."""
     return _blown_up(phi_c(3))
 
@@ -59,7 +59,7 @@ def f_map() -> Any:
 
 
 @equation("s5-g")
-def g_map() -> Any:
+def g_map() -> sympy.Expr:
     """g(m) = 6m + 4m^2 + m^3: the launch polynomial."""
     return p_blown_up()[1]
 
@@ -82,7 +82,7 @@ def r_of_m() -> Any:
 
 
 @equation("s5-jacobian")
-def Dh_bar() -> Any:
+def Dh_bar() -> sympy.MatrixBase:
     """D h-bar(0, m) at the fixed point: lower triangular, since s = 0 is invariant; * depends on the O(s) terms.
 
     d(mbar)/dm is f'(m)/g'(mbar) by implicit differentiation of f(m) = g(mbar).  Its certificate is that the equation of

@@ -45,7 +45,7 @@ def launch_velocity() -> Any:
     return launched_under(acceleration(), _velocity)
 
 
-def launched_under(push: Any, letter: Any) -> Any:
+def launched_under(push: sympy.Expr, letter: sympy.Expr) -> Any:
     """The velocity with which a flight leaves sigma to be back after t, of x'' = push(sigma), a polynomial.
 
     Parameters
@@ -84,24 +84,24 @@ def zero_set() -> Any:
     return found
 
 
-def project(point: tuple[Any, Any]) -> tuple[Any, Any]:
+def project(point: tuple[sympy.Expr, sympy.Expr]) -> tuple[sympy.Expr, sympy.Expr]:
     """p(sigma, t) = (sigma, v)."""
     return point[0], value_at_point(launch_velocity(), point)
 
 
-def reset(point: tuple[Any, Any]) -> tuple[Any, Any]:
+def reset(point: tuple[sympy.Expr, sympy.Expr]) -> tuple[sympy.Expr, sympy.Expr]:
     """phi(sigma, t) = (sigma + t, x-dot)."""
     return sympy.expand(point[0] + point[1]), value_at_point(impact_velocity(), point)
 
 
-def value_at_point(expression: Any, point: tuple[Any, Any]) -> Any:
+def value_at_point(expression: sympy.Expr, point: tuple[sympy.Expr, sympy.Expr]) -> Any:
     """A polynomial in (sigma, t) at a point with rational coordinates, or with one square root in them."""
     found = sympy.expand(expression.subs({sigma: point[0], t: point[1]}, simultaneous=True))
     _certified(expression, dict(zip((sigma, t), point, strict=True)), found)
     return found
 
 
-def _certified(expression: Any, images: dict[Any, Any], result: Any, order: int | None = None) -> None:
+def _certified(expression: sympy.Expr, images: dict[Any, Any], result: sympy.Expr, order: int | None = None) -> None:
     """Leave the certificate of a substitution; a square root in the images is w."""
     radicands = {
         power.base
@@ -122,7 +122,7 @@ C, D = (sympy.Integer(-1), sympy.Integer(4)), (sympy.Integer(-3), sympy.Integer(
 E = (-sympy.sqrt(3), 2 * sympy.sqrt(3))
 
 
-def cusp_conditions(point: tuple[Any, Any]) -> tuple[Any, Any, Any, Any]:
+def cusp_conditions(point: tuple[sympy.Expr, sympy.Expr]) -> tuple[sympy.Expr, sympy.Expr, sympy.Expr, sympy.Expr]:
     """(v_t, v_tt, v_ttt, v_sigma t) at a point: p has a cusp where the first two vanish and the others do not."""
     v = launch_velocity()
     at = {sigma: point[0], t: point[1]}
@@ -161,7 +161,7 @@ def cofactor() -> Any:
     return quotient
 
 
-def height(u: Any) -> Any:
+def height(u: sympy.Expr) -> Any:
     """x - c at u of the flight (sigma, t)."""
     v = launch_velocity()
     poly = sympy.Poly(acceleration().subs(sigma, sigma + s), s)
@@ -258,9 +258,13 @@ def leading_launch(weights: Weights) -> Any:
     ------
     ArithmeticError : it does not stay finite as H -> 0.
     """
-    near = {a_symbol(0): 12 * kappa * e, a_symbol(1): sympy.Integer(0), a_symbol(2): 24 * kappa}
-    images = near | {offset: H**weights.time * sigma, delay: H**weights.time * t}
-    images |= {a_symbol(0): 12 * kappa * H**weights.unfolding * e}
+    images = {
+        a_symbol(0): 12 * kappa * H**weights.unfolding * e,
+        a_symbol(1): sympy.Integer(0),
+        a_symbol(2): 24 * kappa,
+        offset: H**weights.time * sigma,
+        delay: H**weights.time * t,
+    }
     put = sympy.expand(v_c(3).subs(images, simultaneous=True))
     least = [sympy.expand(put).coeff(H, n) for n in range(weights.velocity + 1)]
     if any(least[:-1]):

@@ -29,7 +29,7 @@ RATES = {
 START = {u: v, E: A, P: 0, P1: 0, b: 0, b1: 1, q: 1, q1: 0}
 
 
-def rate_of(expression: Any) -> Any:
+def rate_of(expression: sympy.Expr) -> Any:
     """The derivative by t of a polynomial in the letters, expanded; its certificate is left."""
     if expression in RATES:
         return RATES[expression]
@@ -78,7 +78,7 @@ INVOLUTION = {v: u, u: v}
 
 
 @equation("s2-singular-p")
-def singular_p() -> tuple[Any, Any]:
+def singular_p() -> tuple[sympy.Expr, sympy.Expr]:
     """Where p is singular on V_c': the polynomial that vanishes there off t = 0, and the one on t = 0.
 
     V_c' is y = 0, x = c + t y, and p forgets t: it is singular where dy/dt = 0.  There x-dot = y + t dy/dt = t dy/dt.
@@ -96,7 +96,7 @@ def singular_p() -> tuple[Any, Any]:
 
 
 @equation("s2-singular-phi")
-def singular_phi() -> tuple[Any, Any]:
+def singular_phi() -> tuple[sympy.Expr, sympy.Expr]:
     """Where phi is singular: the image of `singular_p` under iota, which leaves every point of t = 0 where it is."""
     off, on = singular_p()
     return off.subs(INVOLUTION, simultaneous=True), on
@@ -119,7 +119,7 @@ def second_derivative() -> Any:
 
 
 @equation("s2-third-derivative")
-def cusp_derivatives() -> tuple[Any, Any]:
+def cusp_derivatives() -> tuple[sympy.Expr, sympy.Expr]:
     """At x-dot = E = 0: minus the third derivative of x, and b^2 times the mixed derivative of the launch velocity.
 
     d^2 v/dtau dt = -(b P1 - b1 P)/b^2 by implicit differentiation of x = c; the group law makes it v times W.

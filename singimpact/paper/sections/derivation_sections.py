@@ -5,26 +5,20 @@ follows them.
 """
 
 from collections.abc import Callable, Sequence
+from functools import partial
 
 from singimpact.documents.document_steps import Section
 from singimpact.inputs import unknown
-from singimpact.paper.sections import (
-    NOTATION,
-    beyond_words,
-    section2_words,
-    section3_words,
-    section4_words,
-    section5_words,
-    section6_words,
-)
+from singimpact.paper.sections import NOTATION
+from singimpact.paper.sections.beyond_formulas import beyond
+from singimpact.paper.sections.section_templates import section_of
+from singimpact.paper.sections.sheet_formulas import section2, section3
+from singimpact.paper.sections.swan_formulas import section5, section6
+from singimpact.paper.sections.tangency_formulas import section4
 
+FORMULAS = (section2, section3, section4, section5, section6, beyond)
 SECTIONS: dict[str, Callable[[], Section]] = {
-    "section2": section2_words.told,
-    "section3": section3_words.told,
-    "section4": section4_words.told,
-    "section5": section5_words.told,
-    "section6": section6_words.told,
-    "beyond": beyond_words.told,
+    formulas.__name__: partial(section_of, formulas.__name__, formulas) for formulas in FORMULAS
 }
 OTHER_NAMES = {
     "2": "section2",

@@ -6,10 +6,10 @@ import re
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
-from functools import cache
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
-from singimpact.documents.rendering import latex_text, latex_words, markdown_text, markdown_words, wrapping
+from singimpact.documents.rendering import environment, wrapping
 from singimpact.inputs import checked_keywords
 from singimpact.paper.claims.index import places_in_paper
 from singimpact.paper.sections.remarks import GRADES, PLURALS, Remark, remark_on
@@ -58,14 +58,6 @@ class Place:
         return ", ".join(f"({number})" for number in self.equations)
 
 
-@cache
-def _stored_places() -> dict[str, Place]:
-    return {
-        line["id"]: Place(line["page"], line["line"], tuple(line["equations"]), line["statement"])
-        for line in places_in_paper()
-    }
-
-
 def place_of(claim: str) -> Place:
     """The place of a claim of the paper, by its id.
 
@@ -73,7 +65,8 @@ def place_of(claim: str) -> Place:
     ------
     KeyError : a claim that the paper does not have.
     """
-    return _stored_places()[claim]
+    where = {line["id"]: line for line in places_in_paper()}[claim]
+    return Place(where["page"], where["line"], tuple(where["equations"]), where["statement"])
 
 
 # Plain words of claims, with the letters of formulas between dollar signs; loads no sympy.
@@ -149,6 +142,11 @@ class Erratum:
         return [trial.line() for trial in self.verdict.trials]
 
     @property
+    def numbers(self) -> list[tuple[str, str]]:
+        """The numbers that a person can check, each below the name of its kind."""
+        return [("witness", self.witness), *(("tried", line) for line in self.trials)]
+
+    @property
     def survives(self) -> str:
         """The claims that rest on it, with their verdicts for the corrected statement."""
         return ", ".join(f"{name} ({kind})" for name, kind in self.dependants.items())
@@ -217,163 +215,31 @@ class Errata(Sequence[Erratum]):
 
     def text(self) -> str:
         """Plain text, for a terminal."""
-        parts = [f"{PAPER}\n{VERSION}\n\n{self.summary}"]
-        for number, group in enumerate(self.remarks, 1):
-            remark = group[0].remark
-            head = f"{number}. {_places(group)}: {GRADES[remark.grade]}\n  why        {_plain(remark.reason)}\n"
-            parts.append(
-                head + "\n".join(_text_entry(entry) for entry in group) + f"\n  survives   {_plain(remark.survives)}"
-            )
-        return "\n\n".join(parts)
+        return self._filled("text").removesuffix("\n")
 
     def markdown(self) -> str:
         """Markdown with formulas between dollar signs: a table for a first look, then each remark."""
-        parts = ["# Errata", f"*{PAPER}.* {VERSION}", self.summary, "## At a glance"]
-        parts.append("\n".join(_brief_markdown(number, group) for number, group in enumerate(self.remarks, 1)))
-        parts += ["## Letters and models", "\n".join(f"- {line}" for line in kept_legend())]
-        parts.append("## One by one")
-        for number, group in enumerate(self.remarks, 1):
-            remark = group[0].remark
-            head = f"### {number}. {_places(group)}: {GRADES[remark.grade]}\n\n{remark.reason}\n\n"
-            parts.append(
-                head + "\n".join(_markdown_entry(entry) for entry in group) + f"\n- what survives: {remark.survives}"
-            )
-        return "\n\n".join(parts) + "\n"
+        return self._filled("markdown", legend=kept_legend())
 
     def latex(self) -> str:
         """A LaTeX document: two pages for a first look, then each remark with its numbers."""
-        fields = {
-            "PAPER": latex_text(PAPER),
-            "VERSION": latex_text(VERSION),
-            "SUMMARY": latex_text(self.summary),
-            "BRIEF": "\n".join(_brief_latex(group) for group in self.remarks),
-            "LEGEND": "\n".join(rf"\item {latex_words(line)}" for line in kept_legend()),
-            "ITEMS": "\n".join(_latex_remark(number, group) for number, group in enumerate(self.remarks, 1)),
-        }
-        document = _DOCUMENT
-        for name, text in fields.items():
-            document = document.replace(f"<{name}>", text)
-        return document
+        return self._filled("latex", legend=kept_legend())
+
+    def _filled(self, form: str, legend: Sequence[str] = ()) -> str:
+        """The template of a format, which stands beside this file, with the errata put in."""
+        template = Path(__file__).with_name(f"errata.{form}.j2").read_text(encoding="utf-8")
+        functions = {"places": _places, "in_letters": in_letters, "wrapping": wrapping}
+        fields = {"errata": self, "paper": PAPER, "version": VERSION, "grades": GRADES, "legend": legend}
+        return str(environment().from_string(template).render(fields | functions))
 
     def as_dict(self) -> dict[str, Any]:
         """The errata as plain data; ``singimpact errata --json`` prints it."""
         return {"paper": PAPER, "version": VERSION, "grades": GRADES, "errata": [entry.as_dict() for entry in self]}
 
 
-_DOCUMENT = r"""\documentclass[11pt,a4paper]{article}
-\usepackage[margin=18mm]{geometry}
-\usepackage{amsmath,amssymb}
-\setlength{\parindent}{0pt}
-\emergencystretch=3em
-\newcommand{\say}[1]{\item[\normalfont\textit{#1}]}
-\newenvironment{numbers}%
-  {\begin{description}\setlength{\itemsep}{0pt}\setlength{\parskip}{0pt}\setlength{\parsep}{0pt}}%
-  {\end{description}}
-\renewcommand{\labelitemi}{$\bullet$}  % the bullet of text comes from a bitmap font
-\begin{document}
-\section*{Errata}
-\textit{<PAPER>}
-
-\smallskip
-{\small <VERSION>}
-
-\medskip
-<SUMMARY> Each line says where, what to read, and why; the numbers behind it follow after the list.
-
-{\small\raggedright
-\begin{enumerate}\setlength{\itemsep}{1pt}\setlength{\parskip}{0pt}
-<BRIEF>
-\end{enumerate}}
-
-\typeout{the list ends on page \thepage}
-\newpage
-\section*{Letters and models}
-{\small
-\begin{itemize}\setlength{\itemsep}{1pt}
-<LEGEND>
-\end{itemize}}
-
-\section*{One by one}
-<ITEMS>
-\end{document}
-"""
-
-
 def _places(group: Sequence[Erratum]) -> str:
     """The places of a remark, each once."""
     return "; ".join(dict.fromkeys(str(entry.place) for entry in group))
-
-
-def _plain(words: str) -> str:
-    """Words without the dollar signs of their formulas."""
-    return words.replace("$", "")
-
-
-def _numbers(entry: Erratum) -> list[tuple[str, str]]:
-    """The numbers that a person can check."""
-    return [("witness", entry.witness), *(("tried", line) for line in entry.trials)]
-
-
-def _text_entry(entry: Erratum) -> str:
-    v = entry.verdict
-    lines = [f"{v.id}: {v.title}", f"  printed    {v.printed}", f"  corrected  {v.corrected}   [{v.worth}]"]
-    lines += [f"  {name:11}{told}" for name, told in _numbers(entry)]
-    return "\n".join(lines + [f"  used by    {entry.survives}"] * bool(entry.dependants))
-
-
-def _brief_markdown(number: int, group: Sequence[Erratum]) -> str:
-    remark = group[0].remark
-    read = "; ".join(wrapping(entry.verdict.corrected or "") for entry in group)
-    return f"{number}. {_places(group)} ({remark.grade}). Read {read}. {remark.reason}"
-
-
-def _markdown_entry(entry: Erratum) -> str:
-    v = entry.verdict
-    lines = [
-        f"`{v.id}`: {_words_markdown(v.title)}.\n",
-        f"- printed: {wrapping(v.printed)}",
-        f"- corrected ({v.worth}): {wrapping(v.corrected or '')}",
-        *(f"- {name}: {_words_markdown(told)}" for name, told in _numbers(entry)),
-    ]
-    return "\n".join(lines + [f"- used by: {markdown_text(entry.survives)}"] * bool(entry.dependants)) + "\n"
-
-
-def _words_markdown(words: str) -> str:
-    return markdown_words(in_letters(words))
-
-
-def _brief_latex(group: Sequence[Erratum]) -> str:
-    remark = group[0].remark
-    read = ";\\ ".join(f"${entry.verdict.corrected}$" for entry in group)
-    place = latex_text(_places(group))
-    return rf"\item \textbf{{{place}}} ({remark.grade}). Read {read}. {latex_words(remark.reason)}"
-
-
-def _latex_remark(number: int, group: Sequence[Erratum]) -> str:
-    remark = group[0].remark
-    head = rf"\subsection*{{{number}. {latex_text(_places(group))}: \normalfont {latex_text(GRADES[remark.grade])}}}"
-    return "\n".join(
-        [
-            head,
-            rf"\raggedright {latex_words(remark.reason)}\par",
-            *(_latex_entry(entry) for entry in group),
-            rf"\textit{{What survives:}} {latex_words(remark.survives)}",
-            "",
-        ]
-    )
-
-
-def _latex_entry(entry: Erratum) -> str:
-    v = entry.verdict
-    rows = [
-        ("printed", f"${v.printed}$"),
-        ("corrected", f"${v.corrected}$ ({latex_text(v.worth)})"),
-        *((name, latex_words(in_letters(number))) for name, number in _numbers(entry)),
-    ]
-    rows += [("used by", latex_text(entry.survives))] * bool(entry.dependants)
-    body = "\n".join(rf"\say{{{name}}} {text}" for name, text in rows)
-    head = rf"\texttt{{{latex_text(v.id)}}}: {latex_words(in_letters(v.title))}."
-    return f"\\par {head}\n\\begin{{numbers}}\n{body}\n\\end{{numbers}}"
 
 
 @checked_keywords
@@ -389,9 +255,6 @@ def errata(on_start: Callable[[Entry | Claim, int, int], None] | None = None) ->
 
     claims = select()
     verdicts = {verdict.id: verdict for verdict in run(claims, on_start=on_start, cached=True)}
-    entries = []
-    for verdict in verdicts.values():
-        if verdict.kind == "corrected":
-            above = {c.id: verdicts[c.id].worth for c in claims if verdict.id in c.rests_on}
-            entries.append(Erratum(verdict, above))
-    return Errata(tuple(entries))
+    above = {name: {c.id: verdicts[c.id].worth for c in claims if name in c.rests_on} for name in verdicts}
+    corrected = [verdict for verdict in verdicts.values() if verdict.kind == "corrected"]
+    return Errata(tuple(Erratum(verdict, above[verdict.id]) for verdict in corrected))

@@ -5,6 +5,7 @@ from collections.abc import Iterable, Sequence
 from singimpact import cache
 from singimpact.documents.document_steps import Mark, Section, Step, claims_of
 from singimpact.documents.rendering import wrapping
+from singimpact.paper.sections.section_templates import template_texts
 from singimpact.store import cache_folder
 
 LIBRARIES = ("sympy", "python-flint", "mpmath")
@@ -31,12 +32,10 @@ def legend() -> tuple[str, ...]:
     """Sentences; formulas in them stand between dollar signs."""
     from singimpact.contact.points import tangency_points
     from singimpact.contact.swans import swan_points_over_clearance
-    from singimpact.impact_oscillator import ImpactOscillator
     from singimpact.paper.trials import true_orbits, true_sheet
 
-    models = {name: ImpactOscillator(**model.to_dict()) for name, model in true_orbits.MODELS.items()}
     lines = []
-    for name, osc in (models | true_sheet.DAMPED).items():
+    for name, osc in (true_orbits.MODELS | true_sheet.DAMPED).items():
         points = {point.kind: f"{float(point.tau):.10f}" for point in tangency_points(osc)}
         swan = next(point for point in swan_points_over_clearance(osc) if point.kind == "negative")
         model = wrapping(osc._repr_latex_().strip("$"))
@@ -60,7 +59,8 @@ def kept_sections(names: Sequence[str] = ()) -> list[Section]:
     >>> kept_sections(["swan"]) == kept_sections(["5"])
     True
     """
-    file = cache_folder() / "derivations" / f"{cache.key_of(names, LIBRARIES, ABOVE)}.sections"
+    # templates are no source to the digest, which reads programs and pages alone
+    file = cache_folder() / "derivations" / f"{cache.key_of([*names, template_texts()], LIBRARIES, ABOVE)}.sections"
     content = cache.recall(file)
     if content is not None:
         stored: list[Section] = cache.unpacked(content, (Section, Step))

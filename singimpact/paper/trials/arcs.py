@@ -8,39 +8,12 @@ from typing import Any
 import numpy as np
 import sympy
 
-from singimpact.algebra.numbers import as_float
 from singimpact.algebra.solving import halved
-from singimpact.contact.points import tangency_points
 from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.paper.trials import true_orbits
+from singimpact.paper.trials.true_sheet import Place, foliated, swans, tangencies
 from singimpact.status import Status
 from singimpact.theory.multipliers import eigenvalues_on_gamma, lambda_
-
-
-@dataclass(frozen=True)
-class Place:
-    """A model at its tangency with a' > 0: `slope` is a'(tau_*), `coefficient` that of sigma^2 on gamma."""
-
-    name: str
-    model: ImpactOscillator
-    tau: float
-    slope: float
-    r: float
-    multiplier: float
-    coefficient: float
-
-
-@lru_cache(maxsize=1)
-def places() -> tuple[Place, ...]:
-    """Both models of `true_orbits`."""
-    found = []
-    for name, oscillator in true_orbits.MODELS.items():
-        model = ImpactOscillator(**oscillator.to_dict())
-        _, tau = true_orbits.contact_model(model, 1)
-        slope, r = float(model.acceleration(tau, order=1)), as_float(model.restitution)
-        rate = true_orbits.lambda_of(r, 1)
-        found.append(Place(name, model, tau, slope, r, rate, slope * (1 - rate) * (2 + rate) / 6))
-    return tuple(found)
 
 
 @dataclass(frozen=True)
@@ -56,14 +29,14 @@ class JumpCase:
 @lru_cache(maxsize=1)
 def jumps() -> tuple[JumpCase, ...]:
     """Jumps of F near the tangency: the flight time changes by more than |sigma| between neighbours of a grid in v."""
-    return tuple(_jumps_on(place, side) for place in places() for side in (-1, 1))
+    return tuple(_jumps_on(place, side) for place in tangencies() for side in (-1, 1))
 
 
 def _jumps_on(point: Place, side: int) -> JumpCase:
     scaled = np.linspace(0.02, 1.2, 400)
     counts, jumps = [], []
     for size in (0.02, 0.01, 0.005):
-        unit = point.slope * size**2
+        unit = point.jets()["a_d1"] * size**2
         tau = point.tau + side * size
         times = _flight_times(point, tau, scaled * unit)
         at = np.flatnonzero(np.abs(np.diff(times)) > size)
@@ -106,7 +79,7 @@ class SideCase:
 def sides() -> tuple[SideCase, ...]:
     """Orbits launched at sigma = -0.02 a tenth below and above gamma, and at half and nearly at P_*."""
     cases = []
-    for place in places():
+    for place in tangencies():
         below = [_fate(place, factor) for factor in (0.3, 0.9)]
         above = [_fate(place, factor) for factor in (1.1, 1.3)]
         cases.append(SideCase(place.name, _common(below), _common(above), max(count for _, count in below + above)))
@@ -136,7 +109,7 @@ def _fate(point: Place, factor: float, impacts: int = 400) -> tuple[str, int]:
 def leaves_gamma() -> tuple[str, bool]:
     """The factor by which an orbit started beside gamma (v off by 1e-3) has left it once sigma has shrunk 30-fold."""
     growth = []
-    for point in places():
+    for point in tangencies():
         (sigma, v), offset = _on_gamma(point)[-1], 1e-3
         tau, speed, along = point.tau + sigma, v * (1 - offset), point.coefficient
         while abs(tau - point.tau) > abs(sigma) / 30:
@@ -166,11 +139,12 @@ class EigenvalueCase:
 @lru_cache(maxsize=1)
 def eigenvalues() -> tuple[EigenvalueCase, ...]:
     """From differences of the impact map at points of gamma on both models."""
-    cases = []
-    for point in places():
-        points = [(sigma, _larger_eigenvalue(point, sigma, v)) for sigma, v in _on_gamma(point)[-4:]]
-        cases.append(EigenvalueCase(point.name, point.r, float(true_orbits.extrapolated(points))))
-    return tuple(cases)
+    return tuple(EigenvalueCase(point.name, point.r, _limiting_eigenvalue(point)) for point in tangencies())
+
+
+def _limiting_eigenvalue(point: Place) -> float:
+    points = [(sigma, _larger_eigenvalue(point, sigma, v)) for sigma, v in _on_gamma(point)[-4:]]
+    return float(true_orbits.extrapolated(points))
 
 
 def _larger_eigenvalue(place: Place, sigma: float, v: float) -> float:
@@ -194,11 +168,8 @@ LIFT_OFF = {
 @lru_cache(maxsize=1)
 def lift_off() -> tuple[tuple[str, float], ...]:
     """(model, flight time) of the first hit from (tau_*, 0), on models for which tau_* = 0 is a double exactly."""
-    found = []
-    for name, (f, g) in LIFT_OFF.items():
-        step = ImpactOscillator(f, g, 0, "0.5").impact_map(0.0, 0.0)
-        found.append((name, float(step.flight_time)))
-    return tuple(found)
+    models = {name: ImpactOscillator(f, g, 0, "0.5") for name, (f, g) in LIFT_OFF.items()}
+    return tuple((name, float(model.impact_map(0.0, 0.0).flight_time)) for name, model in models.items())
 
 
 # Orbits near a negative swan on two models: the cube root in F, the eigenvalue on gamma, where orbits come to rest.
@@ -246,9 +217,8 @@ def eigenvalue() -> tuple[float, float]:
 def fates() -> tuple[str, bool]:
     """From sigma in {-0.05, 0.02} and v at 0.2 to 5 times the height of gamma at |sigma|, at both models' swans."""
     count, lost, largest = 0, 0, -np.inf
-    for oscillator in true_orbits.MODELS.values():
-        at, contact = true_orbits.contact_model(oscillator, 2)
-        model = ImpactOscillator(**at.to_dict())
+    for point in swans():
+        model, contact = point.model, point.tau
         height = abs(float(model.acceleration(contact, order=2))) * 0.05**3 / 12
         for sigma in (-0.05, 0.02):
             tau, v = np.full(6, contact + sigma), height * np.array([0.2, 0.5, 0.8, 1.3, 2.0, 5.0])
@@ -269,23 +239,13 @@ def fates() -> tuple[str, bool]:
 # Orbits near a tangency with a' < 0 on two models: no jumps, chatter, and leaves followed backwards.
 
 
-def foliated() -> list[tuple[str, ImpactOscillator, float, float]]:
-    """(name, model, tau_*, k) at the first tangency with a' < 0."""
-    found = []
-    for name, oscillator in true_orbits.MODELS.items():
-        model = ImpactOscillator(**oscillator.to_dict())
-        tau = next(point.tau for point in tangency_points(model) if point.kind == "foliation")
-        found.append((name, model, tau, float(model.acceleration(tau, order=1)) / 6))
-    return found
-
-
 def no_jumps() -> tuple[str, bool]:
     """Neighbouring flight times on a grid with |sigma| <= 0.05 and v up to 4 |k| sigma^2 at its corner."""
     states, largest = 0, 0.0
-    for _, model, tau, k in foliated():
+    for point in foliated():
         sigma = np.linspace(-0.05, 0.05, 81)
-        v = np.linspace(0, 4 * abs(k) * 0.05**2, 61)[1:]
-        times = np.asarray(model.impact_map((tau + sigma)[:, None], v[None, :]).flight_time)
+        v = np.linspace(0, 4 * abs(point.jets()["k"]) * 0.05**2, 61)[1:]
+        times = np.asarray(point.model.impact_map((point.tau + sigma)[:, None], v[None, :]).flight_time)
         states += times.size
         largest = max(largest, float(np.abs(np.diff(times, axis=0)).max()), float(np.abs(np.diff(times, axis=1)).max()))
     name = f"no jump of F among {states} neighbouring states on two models, largest step {largest:.1e}"
@@ -295,13 +255,13 @@ def no_jumps() -> tuple[str, bool]:
 def chatter() -> tuple[str, bool]:
     """Arcs p(t = l sigma), 0 < sigma <= 0.05, for l = 0.1, 0.5, 2, followed together: the largest v over them falls."""
     count, last, factor = 40, 0.0, 0.0
-    for _, model, point, k in foliated():
+    for point in foliated():
         for ell in (0.1, 0.5, 2.0):
             sigma = np.linspace(0.002, 0.05, 25)
-            tau, v = point + sigma, -k * (3 * ell + ell**2) * sigma**2
+            tau, v = point.tau + sigma, -point.jets()["k"] * (3 * ell + ell**2) * sigma**2
             start, sizes = v.max(), []
             for _ in range(count):
-                step = model.impact_map(tau, v)
+                step = point.model.impact_map(tau, v)
                 tau, v = np.asarray(step.tau), np.asarray(step.v)
                 sizes.append(float(v.max()))
             last = max(last, sizes[-1] / start)
@@ -325,16 +285,6 @@ class Leaf:
 @lru_cache(maxsize=1)
 def leaves() -> tuple[Leaf, ...]:
     """Launch from rest at tau_* + end, end < 0, where a > 0; chatter comes to rest at the foot of the leaf."""
-    rows = []
-    for name, model, point, _ in foliated():
-        r = as_float(model.restitution)
-        for end in (-0.04, -0.02, -0.01):
-            tau, v = point + end, 0.0
-            for _ in range(400):
-                step = model.impact_map(tau, v)
-                tau, v = float(step.tau), float(step.v)
-                if v < 1e-13:
-                    break
-            rest = tau - 2 * v / (float(model.acceleration(tau)) * (1 - r))
-            rows.append(Leaf(name, rest - point, end))
-    return tuple(rows)
+    starts = [(point, end) for point in foliated() for end in (-0.04, -0.02, -0.01)]
+    rests = [true_orbits.resting_time(point.model, point.tau + end, 0.0, 400, 1e-13) for point, end in starts]
+    return tuple(Leaf(point.name, rest - point.tau, end) for (point, end), rest in zip(starts, rests, strict=True))

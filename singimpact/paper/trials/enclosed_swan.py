@@ -91,11 +91,11 @@ def bracket(rate: str) -> Bracket | None:
     return Bracket(low, high, len(pieces)) if in_order and low > 0 and high < LAST else None
 
 
-def _ball(value: Fraction) -> Any:
+def _ball(value: Fraction) -> arb:
     return arb(fmpq(value.numerator, value.denominator))
 
 
-def _side(r: Any, low: Fraction, high: Fraction) -> Side | None:
+def _side(r: arb, low: Fraction, high: Fraction) -> Side | None:
     """The common fate of all orbits from rest at -1 - h, h between two numbers; None when it is not decided."""
     middle, radius = _ball((low + high) / 2), _ball((high - low) / 2)
     spread = arb(0).union(radius).union(-radius)
@@ -127,7 +127,7 @@ class _Orbit:
     dw: Any
 
     @staticmethod
-    def at_rest(r: Any, h: Any) -> _Orbit | None:
+    def at_rest(r: arb, h: arb) -> _Orbit | None:
         """After the first impact: T is the smaller root of 12 + 6h - (4 + 4h) T + h T^2."""
         under = 16 - 16 * h - 8 * h * h
         if not under > 0:
@@ -139,17 +139,17 @@ class _Orbit:
         w = -r * time * time * slope
         return _Orbit(r, h, time - 1, w, rate, -r * (2 * time * rate * slope + time * time * bend))
 
-    def narrowed(self, y: Any, w: Any) -> _Orbit:
+    def narrowed(self, y: arb, w: arb) -> _Orbit:
         """A state with narrower balls for y and w that also hold all states, by the mean value theorem."""
         return replace(self, y=self.y.intersection(y), w=self.w.intersection(w))
 
-    def p(self, time: Any) -> Any:
+    def p(self, time: arb) -> Any:
         """The height over the flight time."""
         return (
             self.w + ((6 * self.h * self.y - 12) * self.y + ((4 * self.h * self.y - 4) + self.h * time) * time) * time
         )
 
-    def slope(self, time: Any) -> Any:
+    def slope(self, time: arb) -> Any:
         """p'."""
         return (6 * self.h * self.y - 12) * self.y + (8 * self.h * self.y - 8 + 3 * self.h * time) * time
 

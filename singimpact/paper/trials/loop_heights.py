@@ -170,8 +170,6 @@ def feet_beside_gamma(swan: Swan, rate: str) -> Feet:
     mu = float(both.mu.value)
     tau = at.A - GAMMA_LINE * (at.B - at.A) / 2
     edge = float(threshold(at.osc, tau).v)
-    rows = []
-    for period in range(3):
-        delta = DEEP * mu ** -(period + np.array(PHASES))
-        rows.append(tuple((_feet(at, np.full(delta.size, tau), edge * (1 + delta)) - at.X).tolist()))
-    return Feet(float(both.lambda_.value), mu, tuple(rows))
+    distances = [DEEP * mu ** -(period + np.array(PHASES)) for period in range(3)]
+    rows = [_feet(at, np.full(delta.size, tau), edge * (1 + delta)) - at.X for delta in distances]
+    return Feet(float(both.lambda_.value), mu, tuple(tuple(row.tolist()) for row in rows))

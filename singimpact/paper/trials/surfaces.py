@@ -24,11 +24,6 @@ SEED = 20071
 STEP = 1e-5  # of central differences: truncation and rounding are both near 1e-10
 
 
-def models() -> list[tuple[str, ImpactOscillator]]:
-    """The two models of `true_orbits`, with methods."""
-    return [(name, ImpactOscillator(**model.to_dict())) for name, model in true_orbits.MODELS.items()]
-
-
 def path(model: Oscillator, tau: float, x: float, v: float, times: ArrayLike) -> Array:
     """(x, x-dot) of a free flight at increasing or decreasing times after tau, by DOP853; shape (2, len(times))."""
     force, forcing = true_orbits.force_and_forcing(model)
@@ -73,7 +68,7 @@ def gradients() -> Tried:
     rng = np.random.default_rng(SEED)
     errors = [
         _identity_error(model, float(tau), float(v), float(model.first_hit(tau, v).flight_time))
-        for _, model in models()
+        for model in true_orbits.MODELS.values()
         for tau, v in zip(rng.uniform(0, 3, 6), rng.uniform(0.2, 1.5, 6), strict=True)
     ]
     return f"x_tau = x-dot - v x_c - A x_v at {len(errors)} points of V_c on two models", max(errors) < 1e-6
@@ -81,7 +76,9 @@ def gradients() -> Tried:
 
 def zero_set_points() -> Tried:
     """From rest at times with a > 0: at landing (tau', w) reversed, the sheet has v_tt = -a(tau)/(t dy/dv)."""
-    places = [(model, tau) for _, model in models() for tau in (0.1, 2.9) if model.acceleration(tau) > 0]
+    places = [
+        (model, tau) for model in true_orbits.MODELS.values() for tau in (0.1, 2.9) if model.acceleration(tau) > 0
+    ]
     worst = max(abs(_second_over_expected(model, tau) - 1) for model, tau in places)
     return f"at {len(places)} points of Z on two models it is -a_c(tau)/(t dy/dv) (to {worst:.0e})", worst < 1e-4
 
@@ -116,7 +113,7 @@ PATH = sympy.Symbol("s")
 
 
 @lru_cache(maxsize=8)
-def touching_flight(x: Any = PATH**3 * (1 - PATH) ** 2) -> TouchingFlight:
+def touching_flight(x: sympy.Expr = PATH**3 * (1 - PATH) ** 2) -> TouchingFlight:
     """The derivatives that a cusp of phi would need at the first return of the flight x(s) from rest, exactly."""
     s, e = PATH, sympy.Symbol("e")
     back = min(root for root in sympy.Poly(x, s).real_roots() if root > 0)
@@ -134,7 +131,7 @@ def touching_flight(x: Any = PATH**3 * (1 - PATH) ** 2) -> TouchingFlight:
     )
 
 
-def exact_sheet(height: Any) -> tuple[Any, Any]:
+def exact_sheet(height: sympy.Expr) -> tuple[sympy.Expr, sympy.Expr]:
     """(v_c, x-dot) of a polynomial motion x = height(v, t) launched at 0 from c = 0; the certificate is left.
 
     Examples
@@ -162,7 +159,7 @@ def exact_sheet(height: Any) -> tuple[Any, Any]:
 @lru_cache(maxsize=1)
 def pressed_point() -> tuple[Tried, dict[str, str]]:
     """A state of rest of the linear model with a < 0 and c > 0: where the free flight goes, and its numbers."""
-    _, model = models()[0]
+    model = true_orbits.LINEAR
     c, a = clearance(model), float(model.acceleration(1.2))
     heights = [float(flow(model)(1.2, c, 0.0, t)[0]) for t in (0.01, 0.005, 0.001)]
     name = (
@@ -175,7 +172,7 @@ def pressed_point() -> tuple[Tried, dict[str, str]]:
 
 def jumps_are_grazes() -> Tried:
     """Bisect every jump of the flight time along lines tau = const, and look at the impact velocity beside it."""
-    lines = [(model, float(tau)) for _, model in models() for tau in np.linspace(0.2, 3.0, 12)]
+    lines = [(model, float(tau)) for model in true_orbits.MODELS.values() for tau in np.linspace(0.2, 3.0, 12)]
     touches = [_touch(model, tau, *ends) for model, tau in lines for ends in _jumps(model, tau)]
     name = (
         f"{len(touches)} jumps of F located on {len(lines)} lines of two models, each with |x-dot| at the first touch "
@@ -209,7 +206,7 @@ def _touch(model: ImpactOscillator, tau: float, low: float, high: float) -> floa
 @lru_cache(maxsize=1)
 def horizon_images() -> Tried:
     """Flights run backwards from rest to an earlier crossing: launched there they touch c at rest (points of H)."""
-    touches = [_touching(model, float(tau)) for _, model in models() for tau in np.linspace(0, 3.5, 25)]
+    touches = [_touching(model, float(tau)) for model in true_orbits.MODELS.values() for tau in np.linspace(0, 3.5, 25)]
     misses = [miss for miss in touches if miss is not None]
     name = f"phi takes {len(misses)} points of H on two models to |v| <= {max(misses):.0e}"
     return name, max(misses) < 1e-9
@@ -243,7 +240,7 @@ def common_orbits() -> Tried:
     """From p(z) and from phi(z) one reaches the same state at a third time."""
     rng = np.random.default_rng(SEED)
     count, worst = 0, 0.0
-    for _, model in models():
+    for model in true_orbits.MODELS.values():
         at, c = flow(model), clearance(model)
         for tau, v in zip(rng.uniform(0, 3, 8), rng.uniform(0.2, 1.5, 8), strict=True):
             hit = model.first_hit(tau, v)
@@ -258,7 +255,7 @@ def common_orbits() -> Tried:
 def semiconjugacy() -> tuple[Tried, dict[str, str]]:
     """G o p against R o phi at first hits by the impact map, at later crossings by DOP853; a later one in numbers."""
     visible, worst, misses, example = 0, 0.0, [], dict[str, str]()
-    for name, model in models():
+    for name, model in true_orbits.MODELS.items():
         at, c, r = flow(model), clearance(model), as_float(model.restitution)
         for tau, v in ((0.4, 0.6), (2.9, 0.5), (1.5, 0.3)):
             step = model.impact_map(tau, v)

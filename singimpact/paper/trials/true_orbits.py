@@ -19,15 +19,16 @@ from singimpact.algebra.expressions import function_of
 from singimpact.algebra.numbers import as_float, as_fraction
 from singimpact.algebra.rings import DOUBLES
 from singimpact.algebra.solving import halved
-from singimpact.contact.contact import acceleration
+from singimpact.contact.contact import acceleration, acceleration_jet, force_jet
 from singimpact.contact.points import tangency_points
 from singimpact.contact.swans import swan_points_over_clearance
+from singimpact.impact_oscillator import ImpactOscillator
 from singimpact.oscillator.model import Oscillator
 
 Flow = Callable[[Any, Any, Any], tuple[Any, Any]]
 
-LINEAR = Oscillator("x", "cos(2*t)", "0.3", "0.5")
-DUFFING = Oscillator("x + 0.1*xdot + 0.3*x**3", "cos(1.7*t)", "0.3", "0.6")
+LINEAR = ImpactOscillator("x", "cos(2*t)", "0.3", "0.5")
+DUFFING = ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "cos(1.7*t)", "0.3", "0.6")
 MODELS = {"linear, omega 2": LINEAR, "damped Duffing, omega 1.7": DUFFING}
 
 
@@ -157,7 +158,7 @@ def completion_orders() -> tuple[float, ...]:
     for model in MODELS.values():
         flow, a, r = _regular(model, 1.2)
         slope = (a(1e-5) - a(-1e-5)) / 2e-5
-        damping = -float(_velocity_jet(model))
+        damping = -float(force_jet(model, 0, 2, DOUBLES).get((0, 1), 0.0))
         misses = []
         for v in (8e-3, 4e-3):
             w = v / a(0.0)
@@ -165,12 +166,6 @@ def completion_orders() -> tuple[float, ...]:
             misses.append(abs(_chatter_sum(flow, a, 0.0, v, r) - series))
         orders.append(float(np.log2(misses[0] / misses[1])))
     return tuple(orders)
-
-
-def _velocity_jet(model: Oscillator) -> Any:
-    from singimpact.contact.contact import force_jet
-
-    return force_jet(model, 0, 2, DOUBLES).get((0, 1), 0.0)
 
 
 @dataclass(frozen=True)
@@ -199,7 +194,9 @@ class GammaCase:
         return f"{self.name}: {self.found:.12g} (theory {self.expected:.12g})"
 
 
-def backwards(flow: Flow, r: Any, s: Any, v: Any, rate: Any, stop: Any, accuracy: Any = None) -> list[tuple[Any, Any]]:
+def backwards(
+    flow: Flow, r: Any, s: Any, v: Any, rate: float, stop: float, accuracy: Any = None
+) -> list[tuple[Any, Any]]:
     """Points (sigma, v) of the orbit before (s, v), until |sigma| > stop.
 
     The flight before (s, v) is run in negative time from impact velocity -v/r; `rate` is the guess of sigma'/sigma.
@@ -265,7 +262,7 @@ def gamma_cases(j: int) -> tuple[GammaCase, ...]:
     where = "tangency" if j == 1 else "swan"
     for name, model in MODELS.items():
         at, tau = contact_model(model, j)
-        a_j = _jet(at, tau, j)
+        a_j = float(acceleration_jet(at, tau, j, DOUBLES)[j])
         cases.append(
             gamma_case(f"{name}, {where}, DOP853", at, a_j, j, scipy_flow(at, tau), SETTINGS.start[j - 1], None)
         )
@@ -281,6 +278,16 @@ def gamma_cases(j: int) -> tuple[GammaCase, ...]:
     return tuple(cases)
 
 
+def resting_time(model: ImpactOscillator, tau: float, v: float, impacts: int, least: float) -> float:
+    """The time at which chatter from a state comes to rest; flights below the velocity `least` are summed up."""
+    for _ in range(impacts):
+        step = model.impact_map(tau, v)
+        tau, v = float(step.tau), float(step.v)
+        if v < least:
+            break
+    return tau - 2 * v / (float(model.acceleration(tau)) * (1 - as_float(model.restitution)))
+
+
 def many_digits(j: int) -> tuple[Any, Any, Fraction]:
     """(mpmath context, tau_*, clearance) of the linear model at a regular point, its tangency or its swan."""
     from mpmath.ctx_mp import MPContext
@@ -294,16 +301,10 @@ def many_digits(j: int) -> tuple[Any, Any, Fraction]:
     return context, context.mpf(0), Fraction(1)
 
 
-def contact_model(model: Oscillator, j: int) -> tuple[Oscillator, float]:
+def contact_model(model: ImpactOscillator, j: int) -> tuple[ImpactOscillator, float]:
     """The model at its first tangency with a' > 0, or at its own negative swan."""
     if j == 1:
         return model, next(point.tau for point in tangency_points(model) if point.kind == "gamma")
     swans = swan_points_over_clearance(model, (Fraction(-2), Fraction(2)))
     swan = next(point for point in swans if point.kind == "negative")
     return model.replace(clearance=swan.clearance), swan.tau
-
-
-def _jet(model: Oscillator, tau: float, j: int) -> float:
-    from singimpact.contact.contact import acceleration_jet
-
-    return float(acceleration_jet(model, tau, j, DOUBLES)[j])

@@ -12,15 +12,16 @@ from singimpact.algebra.numbers import as_float
 from singimpact.algebra.rings import DOUBLES
 from singimpact.algebra.solving import secant
 from singimpact.contact.contact import force_jet
+from singimpact.contact.points import tangency_points
 from singimpact.impact_oscillator import ImpactOscillator
-from singimpact.paper.trials import arcs, true_orbits
+from singimpact.paper.trials import true_orbits
 
 STEPS = (0.04, 0.02, 0.01, 0.005)  # of the distance from the point; the rest is extrapolated to distance 0
 PAIRS = ((1, 0), (0, 1), (0, 2), (1, 1))  # derivatives of f that v_c contains to third order
 REGULAR = 1.2  # a phase at which every model here presses, a_c < 0
 DAMPED = {
     "damped linear, omega 2": ImpactOscillator("x + 0.4*xdot", "cos(2*t)", "0.3", "0.5"),
-    "damped Duffing, omega 1.7": ImpactOscillator(**true_orbits.DUFFING.to_dict()),
+    "damped Duffing, omega 1.7": true_orbits.DUFFING,
 }
 
 
@@ -36,6 +37,17 @@ class Place:
     def r(self) -> float:
         """The restitution."""
         return as_float(self.model.restitution)
+
+    @property
+    def multiplier(self) -> float:
+        """lambda at a tangency: the factor by which sigma shrinks in an impact on gamma."""
+        return true_orbits.lambda_of(self.r, 1)
+
+    @property
+    def coefficient(self) -> float:
+        """The coefficient of sigma^2 in v on gamma, at a tangency with a' > 0."""
+        rate = self.multiplier
+        return float(self.model.acceleration(self.tau, order=1)) * (1 - rate) * (2 + rate) / 6
 
     def jets(self) -> dict[str, float]:
         """Values of the paper's letters: a and its derivatives, b = -f_v, r, k = a'/6, ell = -a''/24."""
@@ -69,7 +81,7 @@ class Place:
 @lru_cache(maxsize=1)
 def regular() -> tuple[Place, ...]:
     """Both models where a < 0."""
-    return tuple(Place(name, ImpactOscillator(**m.to_dict()), REGULAR) for name, m in true_orbits.MODELS.items())
+    return tuple(Place(name, model, REGULAR) for name, model in true_orbits.MODELS.items())
 
 
 @lru_cache(maxsize=1)
@@ -81,23 +93,24 @@ def damped() -> tuple[Place, ...]:
 @lru_cache(maxsize=1)
 def tangencies() -> tuple[Place, ...]:
     """Both models at their tangency with a' > 0."""
-    return tuple(Place(place.name, place.model, place.tau) for place in arcs.places())
+    return tuple(Place(name, *true_orbits.contact_model(model, 1)) for name, model in true_orbits.MODELS.items())
 
 
 @lru_cache(maxsize=1)
 def foliated() -> tuple[Place, ...]:
     """Both models at their tangency with a' < 0."""
-    return tuple(Place(name, model, tau) for name, model, tau, _ in arcs.foliated())
+    return tuple(Place(name, model, foliation(model)) for name, model in true_orbits.MODELS.items())
+
+
+def foliation(model: ImpactOscillator) -> float:
+    """The first tangency of a model with a' < 0."""
+    return next(point.tau for point in tangency_points(model) if point.kind == "foliation")
 
 
 @lru_cache(maxsize=1)
 def swans() -> tuple[Place, ...]:
     """Both models at their own negative swan."""
-    found = []
-    for name, oscillator in true_orbits.MODELS.items():
-        at, tau = true_orbits.contact_model(oscillator, 2)
-        found.append(Place(name, ImpactOscillator(**at.to_dict()), tau))
-    return tuple(found)
+    return tuple(Place(name, *true_orbits.contact_model(model, 2)) for name, model in true_orbits.MODELS.items())
 
 
 def number(expression: Any, values: dict[str, float]) -> float:

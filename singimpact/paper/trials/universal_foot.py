@@ -49,7 +49,7 @@ class Box:
     high: Fraction
 
 
-def _next_length(sigma: Any, t: Any, rate: Any) -> Any:
+def _next_length(sigma: arb, t: arb, rate: arb) -> arb:
     """The length of the flight after one of length t that lands at sigma: Newton's method, then one step in balls."""
     q = 6 * (sigma * sigma - 1)
     goal = rate * t * (q - 4 * sigma * t + t * t)
@@ -116,7 +116,7 @@ def covering(low: Fraction, high: Fraction) -> list[Box]:
     return [Box((one, two), foot(one)[0], foot(two)[1]) for one, two in itertools.pairwise(rates)]
 
 
-def scaled(bound: Fraction, rate: Fraction, power: Fraction) -> Any:
+def scaled(bound: Fraction, rate: Fraction, power: Fraction) -> arb:
     """The ball of bound (1 - r)^power."""
     with balls_at(EFFORT.bits):
         rest, exponent = 1 - rate, fmpq(power.numerator, power.denominator)
@@ -174,6 +174,6 @@ def elastic() -> Elastic:
         )
 
 
-def _fraction(ball: Any) -> Fraction:
+def _fraction(ball: arb) -> Fraction:
     mantissa, exponent = ball.man_exp()
     return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)

@@ -25,13 +25,7 @@ def negative(r: str) -> ImpactOscillator:
 @lru_cache(maxsize=8)
 def foot(r: str, sigma: float = -1.0, v: float = 0.0) -> float:
     """Where chatter from (sigma, v) comes to rest in the negative swan; for A itself this is X."""
-    osc, tau, speed = negative(r), sigma, v
-    for _ in range(2000):
-        step = osc.impact_map(tau, speed)
-        tau, speed = float(step.tau), float(step.v)
-        if speed < 1e-14:
-            break
-    return tau - 2 * speed / (float(osc.acceleration(tau)) * (1 - float(sympy.Rational(r))))
+    return true_orbits.resting_time(negative(r), sigma, v, 2000, 1e-14)
 
 
 @lru_cache(maxsize=1)

@@ -41,7 +41,7 @@ def _at_rests() -> dict[str, Any]:
     return found
 
 
-def _two_families(stated: tuple[Any, Any, Any]) -> Check:
+def _two_families(stated: tuple[sympy.Expr, sympy.Expr, sympy.Expr]) -> Check:
     """(c where Sm = 0, c where B = 0, a(s_1) + a(s_2) there)."""
     symmetric, skew, total = stated
     at = _at_rests()
@@ -109,7 +109,7 @@ def _exactly_two(stated: tuple[Any, Any, Any, dict[int, Any]]) -> Check:
     )
 
 
-def _critical_values(stated: tuple[Any, Any, Any]) -> Check:
+def _critical_values(stated: tuple[sympy.Expr, sympy.Expr, sympy.Expr]) -> Check:
     """(dc/dh over a, c at Ch = 0, c at a = 0) of the symmetric flights, over g."""
     ratio, tacnode, tangency = stated
     push = Cw - PHI  # a/g
@@ -131,7 +131,7 @@ def _critical_values(stated: tuple[Any, Any, Any]) -> Check:
     )
 
 
-def _first(stated: tuple[Any, Any, int]) -> Check:
+def _first(stated: tuple[sympy.Expr, sympy.Expr, int]) -> Check:
     """(c_1 below a rate, in K = cos(omega pi/2), c_1 above it, the rate)."""
     below, above, border = stated
     links = [*_branch(below, above), *_no_others(border), ("five rates: " + FLOWN, _flown(below, above, border))]
@@ -142,7 +142,7 @@ def _first(stated: tuple[Any, Any, int]) -> Check:
 FLOWN = "the first visible transition below c = 1 that the search finds is at c_1 to 1e-11"
 
 
-def _branch(below: Any, above: Any) -> list[tuple[str, bool]]:
+def _branch(below: sympy.Expr, above: sympy.Expr) -> list[tuple[str, bool]]:
     """The flights with cos(omega m) = -1, from the positive swan c = -1 to the first critical value."""
     real = {kappa: REAL}
     first = composed(-PHI, real | {Ch: sympy.Integer(0), Cw: K}, below)
@@ -239,7 +239,7 @@ def _signs(border: int) -> bool:
 RATES = ("1.3", "2.3", "2.8", "3.3", "5.2")
 
 
-def _flown(below: Any, above: Any, border: int) -> bool:
+def _flown(below: sympy.Expr, above: sympy.Expr, border: int) -> bool:
     """The search of `surface.outline_transitions` on five rates."""
     for rate in RATES:
         events = [
@@ -253,7 +253,7 @@ def _flown(below: Any, above: Any, border: int) -> bool:
     return True
 
 
-def _value(rate: str, below: Any, above: Any, border: int) -> float | None:
+def _value(rate: str, below: sympy.Expr, above: sympy.Expr, border: int) -> float | None:
     """c_1 of one rate in doubles."""
     if float(rate) < border:
         w = sympy.Float(rate, 30)

@@ -109,11 +109,11 @@ def _saddle(power: int) -> Check:
     )
 
 
-def _positive(expression: Any) -> bool:
+def _positive(expression: sympy.Expr) -> bool:
     return positive_on(sympy.cancel(expression), lambda_, 0, 1)
 
 
-def _along(expression: Any) -> Any:
+def _along(expression: sympy.Expr) -> Any:
     """l d/dl, where L stands for l^j."""
     return sympy.expand(ell * sympy.diff(expression, ell) + j * L * sympy.diff(expression, L))
 

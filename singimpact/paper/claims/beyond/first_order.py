@@ -7,10 +7,10 @@ import sympy
 
 from singimpact.paper.claims.claim import Check, Statement, claim_beyond
 from singimpact.paper.claims.sections.section3 import NORMALLY_HYPERBOLIC
-from singimpact.paper.claims.verifiers import every, is_zero, same, sample
+from singimpact.paper.claims.verifiers import Finding, every, is_zero, measured_on, same, sample
 from singimpact.paper.routes import first_order as route
 from singimpact.paper.routes.first_order import A2, A3, Change, damping, first, h, j, s, second
-from singimpact.paper.trials.first_order_feet import MODELS, RATES, measured
+from singimpact.paper.trials.first_order_feet import MODELS, RATES, Model, measured
 from singimpact.theory.impact_sheet import generic_sheet
 from singimpact.theory.multipliers import launch_velocity
 
@@ -19,7 +19,7 @@ SHOWN = 3  # contact orders at which v_c is compared beside the identity for eve
 WITHIN = 0.1  # of an order, between distances H that differ by a factor 2
 
 
-def _removed(stated: Any) -> Check:
+def _removed(stated: sympy.Expr) -> Check:
     """alpha in S = s + alpha s^2, as a function of j and of the jets."""
     change = route.removal()
     derived = sympy.cancel(change.time / s**2)
@@ -58,7 +58,7 @@ def _sheet_agrees(order: int, change: Change) -> bool:
     return is_zero(sympy.expand(stated - by_degree / h ** (order + 1)))
 
 
-def _shifted(stated: Any) -> Check:
+def _shifted(stated: sympy.Expr) -> Check:
     """X_H - X to first order in H, in f_v and the derivatives A2, A3 of a_c at the swan point."""
     change = route.swan_removal()
     derived = sympy.factor(-change.time.subs(s, X))
@@ -73,24 +73,23 @@ def _shifted(stated: Any) -> Check:
     )
 
 
-def _orders(stated: tuple[int, int, Any]) -> Check:
+def _orders(stated: tuple[int, int, sympy.Expr]) -> Check:
     """(orders of X_H - X without and with the term of first order; that term over chi H)."""
     plain, corrected, term = stated
-    checks, worst = [], dict[str, str]()
-    for model in MODELS:
-        findings = []
-        for rate in RATES:
-            feet = measured(model, rate)
-            weight = float(term.subs(X, feet.limit))
-            rest = [off - weight * feet.chi * size for size, off in zip(feet.sizes, feet.offsets, strict=True)]
-            bare, removed = feet.order(feet.offsets), feet.order(rest)
-            findings.append((rate, bare, removed))
-        wrong = any(abs(bare - plain) > WITHIN or abs(removed - corrected) > WITHIN for _, bare, removed in findings)
-        if wrong:
-            worst = {"model": model.name, "orders": "; ".join(f"r = {r}: {b:.3f}, {c:.3f}" for r, b, c in findings)}
-        words = ", ".join(f"{bare:.3f} and {removed:.3f} at r = {rate}" for rate, bare, removed in findings)
-        checks.append((f"{model.name}, chi = {feet.chi:.4f}: orders {words}", not wrong))
-    return every(checks, "supported", witness=lambda: worst)
+
+    def orders(model: Model, rate: str) -> Finding:
+        feet = measured(model, rate)
+        weight = float(term.subs(X, feet.limit))
+        rest = [off - weight * feet.chi * size for size, off in zip(feet.sizes, feet.offsets, strict=True)]
+        bare, removed = feet.order(feet.offsets), feet.order(rest)
+        near = abs(bare - plain) <= WITHIN and abs(removed - corrected) <= WITHIN
+        numbers = {"model": model.name, "r": rate, "orders": f"{bare:.3f}, {removed:.3f}"}
+        return f"{bare:.3f} and {removed:.3f} at r = {rate}", near, numbers
+
+    def said(model: Model, words: str) -> str:
+        return f"{model.name}, chi = {measured(model, RATES[0]).chi:.4f}: orders {words}"
+
+    return measured_on(MODELS, RATES, orders, said)
 
 
 ALPHA = (2 * second + first * damping) / (2 * (j + 3) * first)

@@ -22,7 +22,7 @@ CLOSE = 1e-3  # the rest of the way to X, as a part of X, in which it is enclose
 NEAR_ONE = tuple(Fraction(value) for value in ("0.9", "0.95", "0.99", "0.995"))
 
 
-def _velocities() -> tuple[Any, Any]:
+def _velocities() -> tuple[sympy.Expr, sympy.Expr]:
     """Launch and landing speed over t |kappa|, as polynomials in (sigma, t)."""
     launch = sympy.expand(sympy.cancel(model.launch_velocity() / (-kappa * t)))
     landing = sympy.expand(sympy.cancel(model.impact_velocity() / (kappa * t)))
@@ -133,7 +133,7 @@ def _used_up() -> Any:
     return (2 * (power + 1) * w / root) ** (1 / (power + 1))
 
 
-def _limit(stated: tuple[Any, str, str]) -> Check:
+def _limit(stated: tuple[sympy.Expr, str, str]) -> Check:
     """(formula in u, u, value): the limit of X (1 - r)^(3/7) as r -> 1, u the invariant of the elastic ball.
 
     u is enclosed; that the limit of X follows from it is an average over many impacts without a bound uniform in r.
@@ -170,7 +170,7 @@ def _limit(stated: tuple[Any, str, str]) -> Check:
     )
 
 
-def _decimal(value: Any) -> Fraction:
+def _decimal(value: sympy.Expr) -> Fraction:
     """A real number of sympy to 30 digits."""
     return Fraction(str(sympy.N(value, 30)))
 

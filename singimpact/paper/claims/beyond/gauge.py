@@ -29,7 +29,7 @@ MODELS = {  # (b, w): damping 2 b, stiffness b^2 + w
 }
 
 
-def _rate(expression: Any) -> Any:
+def _rate(expression: sympy.Expr) -> Any:
     """d/dt of an expression in X, V = X', E, C, S along the motion."""
     rates = {X: V, V: a - 2 * b * V - (b**2 + w) * X, E: b * E, C: -w * S, S: C}
     return sum((sympy.diff(expression, letter) * rate for letter, rate in rates.items()), sympy.Integer(0))

@@ -29,12 +29,12 @@ FOUND = EXPONENT, FACTOR
 SECOND = q * (3 + (2 + q) * j) * (3 + (1 + 2 * q) * j) / (3 * (1 - q) * (3 + 2 * j + 2 * j * q - j * q**2))
 
 
-def _binomial(base: Any, power: Any, order: int) -> Any:
+def _binomial(base: sympy.Expr, power: sympy.Expr, order: int) -> Any:
     """(1 + base)^power to an order."""
     return sum((sympy.ff(power, k) / sympy.factorial(k) * base**k for k in range(order + 1)), sympy.Integer(0))
 
 
-def _vanishes(expression: Any, images: dict[Any, Any], small: Any, order: int) -> bool:
+def _vanishes(expression: sympy.Expr, images: dict[Any, Any], small: sympy.Expr, order: int) -> bool:
     """Whether a polynomial in the images is zero up to an order in a small letter; it leaves a certificate then."""
     full = sympy.Poly(expression.subs(images, simultaneous=True), small)
     holds = all(sympy.cancel(value) == 0 for (power,), value in full.terms() if power <= order)
@@ -65,7 +65,7 @@ def _adiabatic(power: int) -> Check:
     )
 
 
-def _balanced(stated: tuple[Any, Any]) -> Check:
+def _balanced(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
     """(N, K): v = (K C b h^(j+1))^(1/(1-q)) = w h^N is kept by an impact to first order in the flight time."""
     stated_n, factor = stated
     balance = _vanishes(LANDING * (1 - rate * e) - LAUNCH * (1 - exponent * e), {rate: exponent - j / 3}, e, 1)
@@ -88,7 +88,7 @@ def _balanced(stated: tuple[Any, Any]) -> Check:
     )
 
 
-def _repelled(stated: Any) -> Check:
+def _repelled(stated: sympy.Expr) -> Check:
     """The relative distance of v/h^N from its value on gamma grows like h^(-p)."""
     rate_ = sympy.factor((1 - q) * (EXPONENT - j / 3))
     box = {j: (0, sympy.oo), q: (0, 1)}
@@ -103,7 +103,7 @@ def _repelled(stated: Any) -> Check:
     )
 
 
-def _second(stated: Any) -> Check:
+def _second(stated: sympy.Expr) -> Check:
     """v/(b h^(j+1)) = P + G P^2 + O(P^3), P in proportion to h^s with s = N - (j+1)."""
     v, speed, first, s, second = sympy.symbols("v U P s G")
     length = 2 * v + 4 * j * v**2 / 3 + 2 * j * (5 * j + 3) * v**3 / 9
@@ -142,13 +142,13 @@ def _second(stated: Any) -> Check:
     )
 
 
-def _cut(expression: Any, small: Any) -> Any:
+def _cut(expression: sympy.Expr, small: sympy.Expr) -> Any:
     """A polynomial to the third order."""
     full = sympy.Poly(expression, small)
     return sum((sympy.factor(value) * small**n for (n,), value in full.terms() if n <= 3), sympy.Integer(0))
 
 
-def _left(stated: Any) -> Check:
+def _left(stated: sympy.Expr) -> Check:
     """The time left of a chatter under a_c < 0: j = 0, where h is the time to the end."""
     ratio = sympy.cancel(1 / FACTOR.subs(j, 0))
     box = {q: (0, 1)}
@@ -162,7 +162,7 @@ def _left(stated: Any) -> Check:
     )
 
 
-def _found(stated: tuple[Any, Any, Any]) -> Check:
+def _found(stated: tuple[sympy.Expr, sympy.Expr, sympy.Expr]) -> Check:
     """(N, K, G) against gamma of true orbits, at two distances: v/(w h^N) - 1 = G P."""
 
     def slope(start: Start, power: Fraction) -> Finding:

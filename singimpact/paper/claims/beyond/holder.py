@@ -1,7 +1,5 @@
 """gamma as a threshold: tau_* - tau_inf = C delta^alpha below it, ln(1/delta)/ln mu impacts above it."""
 
-from typing import Any
-
 import sympy
 
 from singimpact.paper.claims.beyond.every_order import j, rising
@@ -47,7 +45,7 @@ def _fails(p: int, q: int, s: int) -> dict[str, str]:
     return {"p": str(p)}
 
 
-def _slopes(stated: Any) -> Check:
+def _slopes(stated: sympy.Expr) -> Check:
     """The exponent of delta, in lambda and mu, on true orbits."""
 
     def slope(start: Start, rate: str) -> Finding:

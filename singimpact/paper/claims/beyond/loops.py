@@ -13,7 +13,7 @@ import sympy
 from singimpact.algebra.certificates import positive_in, positive_on
 from singimpact.algebra.derivations import At, motion, substitution
 from singimpact.paper.claims.claim import Check, Statement, claim_beyond
-from singimpact.paper.claims.verifiers import Finding, every, is_zero, measured_on, same
+from singimpact.paper.claims.verifiers import Finding, every, is_zero, measured_on, root_of_line, same
 from singimpact.paper.trials.loop_heights import (
     GENERATIONS,
     LINES,
@@ -37,7 +37,7 @@ def height(ratio: Any) -> Any:
     return sympy.expand(launch_velocity(1, sympy.Integer(-1), -ratio))
 
 
-def excess(place: Any, velocity: Any) -> Any:
+def excess(place: sympy.Expr, velocity: sympy.Expr) -> Any:
     """x' at A of the motion through (place, velocity): v - sigma^2/2.  On W^s(X) it is 0 to second order."""
     time = sympy.Symbol("t")
     flight = v * time + s * time**2 / 2 + time**3 / 6
@@ -60,19 +60,11 @@ def preimage() -> Any:
     return sympy.expand(6 * (r * landing - w * ell**2))
 
 
-def _root(expression: Any, variable: Any) -> Any:
-    """The root of a linear polynomial."""
-    line = sympy.Poly(expression, variable)
-    if line.degree() != 1:
-        raise ArithmeticError(f"{expression} is not linear in {variable}")
-    return -line.nth(0) / line.nth(1)
-
-
-def _map(stated: tuple[Any, Any, Any]) -> Check:
+def _map(stated: tuple[sympy.Expr, sympy.Expr, sympy.Expr]) -> Check:
     """(height on W^s(X) above the tear, height of the tear, polynomial in (l, r) of the height below it)."""
     outer, tear, polynomial = stated
-    above = _root(excess(sympy.Integer(-1), w), w)
-    turn = _root(sympy.diff(height(ell), ell), ell)
+    above = root_of_line(excess(sympy.Integer(-1), w), w)
+    turn = root_of_line(sympy.diff(height(ell), ell), ell)
     graze = height(ell).subs(ell, turn)
     passed, landed = excess(sympy.Integer(-1), graze), excess(-turn, sympy.Integer(0))
     substitution(At(-6 * height(ell) + w, {ell: lambda_, w: (1 - lambda_) * P(1)}), sympy.Integer(0))
@@ -107,7 +99,7 @@ def _map(stated: tuple[Any, Any, Any]) -> Check:
     )
 
 
-def _changes_sign(polynomial: Any, low: Any, high: Any) -> bool:
+def _changes_sign(polynomial: sympy.Expr, low: sympy.Expr, high: sympy.Expr) -> bool:
     """Whether a quadratic in l is negative at low and positive at high for every r in (0, 1): one root between."""
     first, last = polynomial.subs(ell, low), polynomial.subs(ell, high)
     opens = sympy.Poly(polynomial, ell).LC()
@@ -122,7 +114,7 @@ def _falls() -> bool:
     )
 
 
-def _crossings(stated: tuple[Any, Any]) -> Check:
+def _crossings(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
     """(outer start, polynomial of the inner one): heights on true orbits differ from the stated ones by O(h)."""
 
     def order(swan: Swan, rate: str) -> Finding:
@@ -139,7 +131,7 @@ def _crossings(stated: tuple[Any, Any]) -> Check:
     )
 
 
-def _starts(stated: tuple[Any, Any], rate: str) -> list[float]:
+def _starts(stated: tuple[sympy.Expr, sympy.Expr], rate: str) -> list[float]:
     """The heights of the first generation for a value of r."""
     outer, polynomial = stated
     roots = sympy.Poly(polynomial.subs(r, sympy.Rational(rate)), ell).nroots()
@@ -151,7 +143,7 @@ def _numbers(values: Any) -> str:
     return ", ".join(f"{value:.6f}" for value in values)
 
 
-def _law(stated: Any) -> Check:
+def _law(stated: sympy.Expr) -> Check:
     """By which factor, in lambda and mu, foot - X changes where delta is divided by mu, in the limit."""
 
     def ratio(swan: Swan, rate: str) -> Finding:

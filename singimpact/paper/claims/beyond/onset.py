@@ -1,14 +1,13 @@
 """Orbits born at a negative swan: none that recurs within it, and one chattering orbit that starts at A."""
 
 from math import sqrt
-from typing import Any
 
 import sympy
 
 from singimpact.algebra.certificates import positive_in
 from singimpact.algebra.derivations import At, substitution
 from singimpact.paper.claims.claim import Check, Statement, claim_beyond
-from singimpact.paper.claims.sections.section6_scaling import near_the_swan
+from singimpact.paper.claims.sections.section6_scaling import persisting
 from singimpact.paper.claims.verifiers import every, same
 from singimpact.paper.routes import unfolding as model
 from singimpact.paper.routes.unfolding import kappa, r, sigma, t, u
@@ -22,7 +21,7 @@ ROUNDING = 1e-8  # of a ratio
 MERGED = 1e-12  # of a period
 
 
-def _rises(stated: Any) -> Check:
+def _rises(stated: sympy.Expr) -> Check:
     """Whether a function of (sigma, v) rises along every flight, from (sigma, v) to (sigma + t, -r x')."""
     images, before = {sigma: sigma + t}, stated
     if stated.has(v):  # only then does the motion matter: that of the universal model
@@ -43,7 +42,7 @@ def _rises(stated: Any) -> Check:
     )
 
 
-def _hop(stated: tuple[Any, Any, Any, Any]) -> Check:
+def _hop(stated: tuple[sympy.Expr, sympy.Expr, sympy.Expr, sympy.Expr]) -> Check:
     """(flight, time of its hit, its speed, its height): a polynomial in s; units of H, |a''| H^3, |a''| H^4."""
     flight, time, speed, top = stated
     derived = sympy.expand(model.height(u).subs({sigma: model.A[0], t: model.C[1], kappa: -1}).subs(u, s + 1))
@@ -53,7 +52,8 @@ def _hop(stated: tuple[Any, Any, Any, Any]) -> Check:
     landing = sympy.diff(derived, s).subs(s, 3)
     coefficients = (sympy.Integer(4), -unit * landing, unit * derived.subs(s, summit))
     square = 2 * rate * drop / bend  # H^2, as a_c rises by |a''| H^2/2 from A to the middle of A and B
-    check = every(
+    curve = sympy.diff(derived, s, 2).subs(s, summit)
+    return persisting(
         [
             (f"the flight from rest at A is {sympy.factor(derived)}", same(derived, flight)),
             (
@@ -65,10 +65,9 @@ def _hop(stated: tuple[Any, Any, Any, Any]) -> Check:
                 same(LAWS[2] * bend * square**2, sympy.Rational(9, 2) * rate**2 * drop**2 / bend),
             ),
         ],
+        [("x' at the hit", landing * kappa), ("x'' at the summit", curve * kappa)],
         witness=lambda: {"flight": str(sympy.factor(derived)), "hit, speed, height": str(coefficients)},
     )
-    curve = sympy.diff(derived, s, 2).subs(s, summit)
-    return near_the_swan(check, [("x' at the hit", landing * kappa), ("x'' at the summit", curve * kappa)])
 
 
 def _orbit(stated: tuple[float, float, float, float]) -> Check:

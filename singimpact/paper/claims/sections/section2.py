@@ -1,7 +1,5 @@
 """Section 2: the impact surface and its sheet V_c'."""
 
-from typing import Any
-
 import sympy
 
 from singimpact.algebra.derivations import At, substitution
@@ -32,12 +30,12 @@ def _divisible(power: int) -> Check:
     )
 
 
-def _signed(number: Any) -> bool:
+def _signed(number: sympy.Expr) -> bool:
     """Whether the sign of a number is known."""
     return number.is_positive is True or number.is_negative is True
 
 
-def _dense(omega: Any) -> Check:
+def _dense(omega: sympy.Expr) -> Check:
     """x'' + x = cos(omega t), a clearance of its own: P near a launch at tau = 0, with flights of any length.
 
     q = k cos(omega t) is the periodic solution.  The flight from rest at s is at time 0, with alpha = -s and

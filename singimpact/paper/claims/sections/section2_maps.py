@@ -16,7 +16,7 @@ from singimpact.theory.plane_forms import fold_form
 a, a1 = a_symbol(0), a_symbol(1)
 
 
-def _smooth(exceptions: Any) -> Check:
+def _smooth(exceptions: sympy.Expr) -> Check:
     """Points of V_c whose gradient (x_tau, x_v, x-dot) vanishes: the stated polynomial is 0 there, and is needed.
 
     By the group law x_tau = x-dot - v q - A b, and where b = x-dot = 0 the Wronskian q b1 is positive.
@@ -37,7 +37,8 @@ def _smooth(exceptions: Any) -> Check:
                 f"where x_v = x-dot = 0, x_tau = {left} and W = {only} > 0: the gradient vanishes where v = 0 only",
                 is_zero(left + variations.v * variations.q)
                 and is_zero(only - variations.q * variations.b1)
-                and _vanishes(exceptions, {variations.v: 0, variations.u: 0}),
+                and exceptions != 0
+                and is_zero(exceptions.subs({variations.v: 0, variations.u: 0})),
             ),
             ("there are such points: x'' + x = 1 + c, from rest, at t = 2 pi", exists),
         ],
@@ -46,14 +47,8 @@ def _smooth(exceptions: Any) -> Check:
     )
 
 
-def _vanishes(condition: Any, where: dict[Any, Any]) -> bool:
-    """Whether a condition, a polynomial that is to be 0, holds at a place; it may not be the zero polynomial."""
-    return condition != 0 and is_zero(sympy.sympify(condition).subs(where))
-
-
-def _same_zeros(stated: Any, derived: Any) -> bool:
+def _same_zeros(stated: sympy.Expr, derived: sympy.Expr) -> bool:
     """Whether two polynomials are multiples of one another by a number that is not 0."""
-    stated, derived = sympy.sympify(stated), sympy.sympify(derived)
     if stated == 0 or derived == 0:
         return bool(stated == derived)
     ratio = sympy.cancel(stated / derived)
@@ -70,7 +65,7 @@ def _two_sheets(rank: int) -> Check:
     return every([(f"a minor of the two gradients on Pi_0 is {minor}, whatever a is: rank {found}", found == rank)])
 
 
-def _horizon(stated: tuple[Any, Any]) -> Check:
+def _horizon(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
     """Singular points of p_c on V_c': the polynomials that vanish there off t = 0, and on t = 0."""
     off, on = variations.singular_p()
     sheet = generic_sheet(0, 4)
@@ -107,7 +102,7 @@ def _whitney(powers: tuple[int, int]) -> Check:
     )
 
 
-def _phi_singular(stated: tuple[Any, Any]) -> Check:
+def _phi_singular(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
     """Singular points of phi = p o iota: the polynomials that vanish there off t = 0, and on t = 0."""
     off, on = variations.singular_phi()
     sheet = generic_sheet(0, 4)
@@ -128,7 +123,7 @@ def _phi_singular(stated: tuple[Any, Any]) -> Check:
     )
 
 
-def _phi_fold(condition: Any) -> Check:
+def _phi_fold(condition: sympy.Expr) -> Check:
     """Off Pi_0 and on Z: the polynomial that must not vanish for a fold, where V_c' is smooth.
 
     At a flight that lands at rest the second derivative of p along its kernel is -E/x_v, or -E/x_tau in the other
@@ -183,7 +178,7 @@ def _phi_cusp(conditions: tuple[Any, ...]) -> Check:
     )
 
 
-def _lift_off(level: Any) -> Check:
+def _lift_off(level: sympy.Expr) -> Check:
     """The level that x_c has to exceed for small t > 0 where the mass lifts off from rest.
 
     x_c starts at c: above a lower level every flight from rest is at first, and above a higher one none, whatever a is.
@@ -216,7 +211,7 @@ def _rest(sign: int) -> Check:
     )
 
 
-def _discontinuity(condition: Any) -> Check:
+def _discontinuity(condition: sympy.Expr) -> Check:
     """The polynomial that vanishes at the first hit where F is discontinuous at a state with v > 0.
 
     x - c = t y with y = v > 0 at t = 0; if its derivative x-dot at the first zero is not 0, the zero is a smooth function

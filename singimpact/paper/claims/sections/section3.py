@@ -18,7 +18,7 @@ NORMALLY_HYPERBOLIC = "the theorem of Hirsch, Pugh and Shub"
 _MAP = r"(\sigma,t)\mapsto"
 
 
-def _image(matrix: Any) -> Any:
+def _image(matrix: sympy.MatrixBase) -> tuple[sympy.Expr, sympy.Expr]:
     return tuple(matrix * sympy.Matrix([sigma, t]))
 
 
@@ -38,7 +38,7 @@ def _eigenvectors(stated: tuple[tuple[Any, tuple[Any, Any]], ...]) -> Check:
     )
 
 
-def _slope_limit(variable: Any, point: Any) -> Any:
+def _slope_limit(variable: sympy.Expr, point: int) -> Any:
     """A verifier: the slope of the contracting eigendirection has the stated limit as `variable` tends to `point`."""
 
     def limit() -> Any:
@@ -50,7 +50,7 @@ def _slope_limit(variable: Any, point: Any) -> Any:
     return identity(limit, "the limit of the slope of the eigenvector derived")
 
 
-def _slope_sign(stated: Any) -> Check:
+def _slope_sign(stated: tuple[int, sympy.Expr]) -> Check:
     """The direction is the eigenvector, its slope is negative for a < 0, and chatter on true orbits follows it."""
     value, vector = route.eigenvectors()[1]
     slope = sympy.cancel(vector[1] / vector[0])
@@ -81,16 +81,13 @@ def _slope_sign(stated: Any) -> Check:
     )
 
 
-def _normally_hyperbolic(stated: tuple[Any, Any]) -> Check:
+def _normally_hyperbolic(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
     """(multiplier along Pi_0, multiplier across): 1, as G is the identity there, and a contraction for every r in (0, 1)."""
     (along, tangent), (across, direction) = route.eigenvectors()
-    rest = [component.subs({route.sigma: 0, route.v: 0}) for component in (route.y_c(2).subs(t, 0),)]
+    at_rest = route.y_c(2).subs({t: 0, route.sigma: 0, route.v: 0})
     return every(
         [
-            (
-                "a launch with v = 0 is at rest where a < 0: Pi_0 consists of fixed points",
-                all(is_zero(component) for component in rest),
-            ),
+            ("a launch with v = 0 is at rest where a < 0: Pi_0 consists of fixed points", is_zero(at_rest)),
             (f"the multiplier along it is {along}", same(along, stated[0]) and is_zero(tangent[1])),
             (
                 f"that across it is {across}, in (0, 1) for every r in (0, 1), and its direction is not along Pi_0",

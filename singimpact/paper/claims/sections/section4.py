@@ -12,7 +12,7 @@ from singimpact.algebra.rings import to_sympy
 from singimpact.contact.contact import rest_acceleration
 from singimpact.paper.claims.claim import Check, Claim, Statement
 from singimpact.paper.claims.sections.section4_trials import TRIALS as TRIALS
-from singimpact.paper.claims.verifiers import every, identity, is_zero, same
+from singimpact.paper.claims.verifiers import every, identity, is_zero, root_of_line, same
 from singimpact.paper.routes import fold, implicit as route
 from singimpact.paper.routes.implicit import X, Y, a_symbol, f_symbol, sigma, t, v
 from singimpact.paper.trials import crosscheck
@@ -32,7 +32,7 @@ def _coefficient(sigma_power: int, t_power: int) -> Any:
     return _coefficient_of(sheet.to_sympy(sheet.v), sigma_power, t_power)
 
 
-def _coefficient_of(series: Any, sigma_power: int, t_power: int) -> Any:
+def _coefficient_of(series: sympy.Expr, sigma_power: int, t_power: int) -> Any:
     return sympy.expand(series).coeff(sigma, sigma_power).coeff(t, t_power).subs(f_symbol(0, 1), -b)
 
 
@@ -65,7 +65,7 @@ def _monomial(i: int, j: int) -> str:
     return head + ("t" if j == 1 else f"t^{j}")
 
 
-def _linear_model(stated: tuple[Any, Any]) -> Check:
+def _linear_model(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
     """a_c and the period of x'' + x = cos(omega t), from its expressions, for every c and omega."""
     model = rest_acceleration(parse("x", ["x"]), parse("cos(omega*t)", ["omega", "t"]), Name("c"))
     derived = to_sympy(model).subs(sympy.Symbol("t"), tau)
@@ -81,7 +81,7 @@ def _linear_model(stated: tuple[Any, Any]) -> Check:
     )
 
 
-def _zeros(stated: Any) -> Check:
+def _zeros(stated: sympy.Expr) -> Check:
     """A polynomial in c that vanishes for the c at which a zero of a_c of x'' + x = cos(omega t) is not simple.
 
     a_c = C - c and a_c' = -omega S with C = cos(omega tau), S = sin(omega tau), C^2 + S^2 = 1.  In general a_c = a_c' = 0
@@ -92,7 +92,7 @@ def _zeros(stated: Any) -> Check:
     letters = {sympy.cos(omega * time): C, sympy.sin(omega * time): S}
     value, rate = model.subs(letters), sympy.diff(model, time).subs(letters)
     circle = C**2 + S**2 - 1
-    at_zero = {letter: _zero_of(value_, letter) for letter, value_ in ((C, value), (S, rate))}
+    at_zero = {letter: sympy.cancel(root_of_line(value_, letter)) for letter, value_ in ((C, value), (S, rate))}
     remainder = sympy.expand(circle.subs(at_zero))
     substitution(At(circle, at_zero), remainder)
     return every(
@@ -104,20 +104,14 @@ def _zeros(stated: Any) -> Check:
     )
 
 
-def _zero_of(line: Any, letter: Any) -> Any:
-    """The zero of an expression of degree 1 in a letter."""
-    slope, start = sympy.Poly(line, letter).all_coeffs()
-    return sympy.cancel(-start / slope)
-
-
-def _phi(time: Any) -> Check:
+def _phi(time: sympy.Expr) -> Check:
     """x-dot_c(tau, v_c; time), the second component of phi_c, against the launch velocity after the involution."""
     taken = route.at_launch(sympy.diff(t * route.y_c(3), t).subs(t, time), 3)
     sheet = generic_sheet(0, 3)
     return identity(lambda: sheet.to_sympy(sheet.xdot), "the launch velocity after the involution")(taken)
 
 
-def _depends_on_c(stated: tuple[Any, Any]) -> Check:
+def _depends_on_c(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
     """d/dc of a' and a'' at tau_*(c), the zero of a_c: implicit differentiation of g(tau) = f(c, 0)."""
     derived = followed_zero()
     check = identity(lambda: derived, "derived by following the zero tau_*(c) of a_c")(stated)
@@ -129,7 +123,7 @@ def _depends_on_c(stated: tuple[Any, Any]) -> Check:
     )
 
 
-def followed_zero() -> tuple[Any, Any]:
+def followed_zero() -> tuple[sympy.Expr, sympy.Expr]:
     """d/dc of a' and a'' at the zero tau_*(c) of a_c, by implicit differentiation of a_c(tau_*) = g(tau_*) - f(c, 0).
 
     With c + delta the acceleration at tau_* + sigma is a(sigma) - f_10 delta + O(delta^2).
@@ -160,7 +154,7 @@ def _leading(j: int, order: int) -> Any:
         lines = "; ".join(case.line() for case in slopes)
         return f"remainder on true orbits: {lines}", all(case.agrees for case in slopes)
 
-    def verify(stated: Any) -> Check:
+    def verify(stated: sympy.Expr) -> Check:
         check = exact(stated)
         return every([(check.evidence, True)], tried=trial) if check.holds else check
 

@@ -25,7 +25,7 @@ rho, t_2 = sympy.symbols("rho t_2")
 Part = tuple[str, bool]
 
 
-def positive_up_to_the_ends(expression: Any, low: Any, high: Any) -> bool:
+def positive_up_to_the_ends(expression: sympy.Expr, low: Any, high: int) -> bool:
     """Whether a polynomial in l is proved to be positive on a closed interval."""
     return positive_on(expression, l, low, high) and all(expression.subs(l, end) > 0 for end in (low, high))
 
@@ -83,7 +83,7 @@ def smooth(j: int) -> Callable[[Any], Check]:
     v = b S^(j+1) (1 - L)(P(L) + ...) with a smooth function L of S.
     """
 
-    def verify(stated: Any) -> Check:
+    def verify(stated: sympy.Expr) -> Check:
         none = ("smooth of every order: no least order is left", stated == sympy.oo)
         return every([*relation(j), *saddle(j), none], modulo=(STABLE,))
 

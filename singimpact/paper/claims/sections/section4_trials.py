@@ -11,7 +11,6 @@ from mpmath import nstr
 from scipy.optimize import minimize_scalar
 
 from singimpact.algebra.precision import digits_at
-from singimpact.contact.points import tangency_points
 from singimpact.impact_oscillator import ImpactOscillator
 from singimpact.paper.claims.claim import Trial, Trials, at_each, compared
 from singimpact.paper.claims.next_sigma import next_sigma
@@ -19,7 +18,7 @@ from singimpact.paper.claims.sections.section2_trials import rest_at_tangency, s
 from singimpact.paper.routes import fold, swan
 from singimpact.paper.routes.implicit import r as restitution, sigma
 from singimpact.paper.trials import arcs, true_orbits
-from singimpact.paper.trials.true_sheet import Place, damped, foliated, number, regular, swans, tangencies
+from singimpact.paper.trials.true_sheet import Place, damped, foliated, foliation, number, regular, swans, tangencies
 from singimpact.status import Status
 from singimpact.theory import fixed_points
 
@@ -54,18 +53,17 @@ def _impact(point: Place, *statements: tuple[Any, ...]) -> Trial:
     return compared(point.name, "x-dot/h^2 at (sigma, t) = (-h, 0.7 h)", truth, *stated)
 
 
-def _next_eta(places: tuple[Place, arcs.Place], *statements: tuple[Any, ...]) -> Trial:
+def _next_eta(point: Place, *statements: tuple[Any, ...]) -> Trial:
     """eta/h of the second flight after a launch at sigma = -h just below gamma."""
-    point, coefficient = places[0], places[1].coefficient
-    first, after = (point.leading(lambda h, n=n: _etas(point, coefficient, h)[n]) for n in (0, 1))
+    first, after = (point.leading(lambda h, n=n: _etas(point, h)[n]) for n in (0, 1))
     values = point.jets() | {"sigma": -1.0, "eta": first}
     stated = [number(formula[1], values) for formula in statements]
     return compared(point.name, f"eta of the next launch, from eta = {first:.6f} at sigma = -1", after, *stated)
 
 
-def _etas(point: Place, coefficient: float, h: float) -> tuple[float, float]:
+def _etas(point: Place, h: float) -> tuple[float, float]:
     """eta/h = (3 sigma/2 + t)/h of two flights, one after the other."""
-    step = point.model.impact_map(point.tau - h, 0.9 * coefficient * h * h)
+    step = point.model.impact_map(point.tau - h, 0.9 * point.coefficient * h * h)
     again = point.model.impact_map(float(step.tau), float(step.v))
     sigma = float(step.tau) - point.tau
     return (-1.5 * h + float(step.flight_time)) / h, (1.5 * sigma + float(again.flight_time)) / h
@@ -125,25 +123,24 @@ def _cubic(point: Place, *orders: int) -> Trial:
     return compared(point.name, "coefficient of t^3 that the changes must remove", point.taylor(0.0, 3), *says)
 
 
+def _fixed_points(rate: str, mp: Any) -> dict[str, Any]:
+    """m1, m2, m3, m_minus, m_plus and r in an mpmath context."""
+    points, exact = fixed_points.tangency(rate, DIGITS), Fraction(rate)
+    numbers = {name: mp.convert(getattr(points, name).value) for name in ("m1", "m2", "m3", "m_minus", "m_plus")}
+    return numbers | {"r": mp.mpf(exact.numerator) / exact.denominator}
+
+
 def _over_rates(trial: Callable[[str, dict[str, Any]], Trial]) -> Trials:
-    """Trials with m1, m2, m3, m_minus, m_plus and r in an mpmath context."""
+    """Trials at the fixed points for each value of r."""
 
     def trials(_printed: object, _corrected: object) -> list[Trial]:
-        rows = []
         with digits_at(DIGITS) as mp:
-            for rate in RATES:
-                points = fixed_points.tangency(rate, DIGITS)
-                names = ("m1", "m2", "m3", "m_minus", "m_plus")
-                at = {name: mp.convert(getattr(points, name).value) for name in names}
-                exact = Fraction(rate)
-                at["r"] = mp.mpf(exact.numerator) / exact.denominator
-                rows.append(trial(f"fixed points, r = {rate}", at))
-        return rows
+            return [trial(f"fixed points, r = {rate}", _fixed_points(rate, mp)) for rate in RATES]
 
     return trials
 
 
-def _at(expression: Any, m: Any, r: Any) -> Any:
+def _at(expression: sympy.Expr, m: Any, r: Any) -> Any:
     """A polynomial in m and r at numbers of an mpmath context; sympy's own text has its rationals in mpmath.mp."""
     spaces = [{"mpf": r.context.mpf}, "mpmath"]
     return sympy.lambdify((fold.m, sympy.Symbol("r")), expression, spaces)(m, r)
@@ -227,10 +224,7 @@ def _gentle() -> tuple[Place, ...]:
             "x + 0.1*xdot + 0.3*x**3", "cos(1.7*t)/5", "0.05", "0.6"
         ),
     }
-    return tuple(
-        Place(name, model, next(point.tau for point in tangency_points(model) if point.kind == "foliation"))
-        for name, model in models.items()
-    )
+    return tuple(Place(name, model, foliation(model)) for name, model in models.items())
 
 
 def _range(point: Place, *formulas: object) -> Trial:
@@ -321,7 +315,7 @@ def _swan_eigenvalue(point: Place, *formulas: object) -> Trial:
 
 AT = f"at sigma = {NEAR}, l = {ELL}"
 BENT = at_each(tangencies, _bent_sigma)
-NEXT = at_each(lambda: zip(tangencies(), arcs.places(), strict=True), _next_eta)
+NEXT = at_each(tangencies, _next_eta)
 TRIALS: dict[str, Trials] = {
     "e:phi": at_each(regular, second_component),
     "e:vtaylor-t2": _coefficient(lambda point: point.taylor(0.0, 2)),

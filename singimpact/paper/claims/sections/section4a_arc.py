@@ -20,7 +20,7 @@ from singimpact.theory.notation import latex
 REACHED = 1e-3  # relative error to which DOP853 finds a leading coefficient of gamma: double precision near Pi_0
 
 
-def _discontinuity(stated: tuple[Any, int]) -> Check:
+def _discontinuity(stated: tuple[sympy.Expr, int]) -> Check:
     """Where the low-velocity first hit jumps: v = coefficient a' sigma^2 on one side of tau_*, found and proved.
 
     At each sigma < 0 v_c(sigma, .) rises from 0 to its value on the horizon and falls after it, so a launch below P_* hits
@@ -58,7 +58,7 @@ def _discontinuity(stated: tuple[Any, int]) -> Check:
     )
 
 
-def _exists(stated: tuple[int, int, Any]) -> Check:
+def _exists(stated: tuple[int, int, sympy.Expr]) -> Check:
     """(power, side, bound of C/a'): a hyperbolic saddle for every r, and gamma on true orbits; the bound is that of P_*."""
     power, side, bound = stated
     coefficient = leading_coefficient(1)  # beside a' sigma^2
@@ -91,7 +91,7 @@ def _exists(stated: tuple[int, int, Any]) -> Check:
     )
 
 
-def _interval_map(rate: Any) -> bool:
+def _interval_map(rate: sympy.Expr) -> bool:
     """lambda -> r is an increasing bijection of (0, 1) onto itself, so "every r" is "every lambda"."""
     ends = (value_at(rate, lambda_, 0), value_at(rate, lambda_, 1))
     return ends == (0, 1) and positive_on(sympy.diff(rate, lambda_), lambda_, 0, 1)
@@ -165,7 +165,7 @@ def _repelling(stated: int) -> Check:
     )
 
 
-def _at_rest(stated: Any) -> Check:
+def _at_rest(stated: sympy.Expr) -> Check:
     """x_c - c on the motion from (tau_*, 0), to third order in t: 0 if w_* is fixed; a' t^3/6 lifts off."""
     leading = sympy.expand(t * route.at_contact(route.y_c(2), 1).subs({route.sigma: 0, route.v: 0}))
     return every(
@@ -197,14 +197,14 @@ def _sides(stated: tuple[str, str]) -> Check:
     )
 
 
-def above_one(stated: Any, j: int) -> bool:
+def above_one(stated: sympy.Expr, j: int) -> bool:
     """Whether a root of the characteristic polynomial of DG on gamma is the larger one: 1 is no root for any r."""
     matrix = DG_on_ray(j)
     at_one = sympy.cancel(1 - matrix.trace() + matrix.det())
     return negative_on(at_one, lambda_, 0, 1) and bool(stated.subs(lambda_, HALF) > 1)
 
 
-def _limit(stated: Any) -> Check:
+def _limit(stated: sympy.Expr) -> Check:
     """The eigenvalue > 1 of DG(w) in the limit along gamma, as a function of lambda."""
     matrix = DG_on_ray(1)
     residual = stated**2 - matrix.trace() * stated + matrix.det()

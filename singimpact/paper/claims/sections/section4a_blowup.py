@@ -26,7 +26,7 @@ CUBIC = (m - HALF) ** 2 * (m + THREE_HALVES)
 ROOT_SIGNS = ((-sympy.oo, -1), (-THREE_HALVES, 1), (0, 1), (HALF, -1), (sympy.oo, 1))
 
 
-def sign_chain(expression: Any, signs: tuple[tuple[Any, int], ...]) -> bool:
+def sign_chain(expression: sympy.Expr, signs: tuple[tuple[Any, int], ...]) -> bool:
     """The polynomial in m has the stated sign at each place, for every r in (0, 1); the places may be infinite."""
     return certificates.sign_chain(expression, m, signs, {r: (0, 1)})
 
@@ -34,19 +34,17 @@ def sign_chain(expression: Any, signs: tuple[tuple[Any, int], ...]) -> bool:
 def _blow_up(stated: tuple[Any, Any, Any]) -> Check:
     """(s'/s at s = 0, m' at s = 0, power of s in what s' leaves out): with sigma = s, eta = s m degree n becomes s^n."""
     rate, image, power = stated
-    check = identity(fold.h_blown_up, "derived from h with s < 0 and the root that lands before the horizon")(
-        (rate, image)
-    )
+    derived = identity(fold.h_blown_up, "derived from h with s < 0 and the root that lands before the horizon")
     return every(
         [
-            (check.evidence, check.holds),
+            derived((rate, image)),
             *first_component(eta + (rate - m) * sigma, power),
             (
                 "the square of the new eta begins with Q_r at degree 2, so over s^2 it is Q_r(1, m) and a smooth multiple of s",
                 _square_begins_with_Q(),
             ),
         ],
-        witness=lambda: dict(check.witness or bent(eta + (rate - m) * sigma)),
+        witness=lambda: bent(eta + (rate - m) * sigma),
     )
 
 
@@ -64,7 +62,7 @@ def _square_begins_with_Q() -> bool:
     return none_below and is_zero(sympy.expand(leading - quadratic))
 
 
-def _q_zeros(stated: tuple[Any, Any, Any]) -> Check:
+def _q_zeros(stated: tuple[sympy.Expr, sympy.Expr, sympy.Expr]) -> Check:
     """Q_r(1, m) has its zeros in (stated[0], stated[1]) and (stated[1], stated[2]); both tend to stated[1]."""
     low, middle, high = stated
     polynomial = fold.Q_at_one()
@@ -101,7 +99,7 @@ def _q_positive(stated: Any) -> Check:
     )
 
 
-def _domain(stated: tuple[Any, Any]) -> Check:
+def _domain(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
     """Near s = 0 the equation Q_r(1, m) + O(s) = 0 has smooth solutions through the zeros, which are simple."""
     discriminant = sympy.discriminant(fold.Q_at_one(), m)
     simple = sign_chain(fold.Q_at_one(), ((-sympy.oo, 1), (HALF, -1), (sympy.oo, 1)))
@@ -155,7 +153,7 @@ def _converse(stated: Callable[[Any], Any]) -> Check:
     )
 
 
-def _fixed_points(stated: Any) -> Check:
+def _fixed_points(stated: sympy.Expr) -> Check:
     """m' = m squared and cleared: the polynomial equation is the stated one."""
     rate, new = fold.h_blown_up()
     cleared = sympy.cancel(sympy.expand((new * rate) ** 2 - (m * rate) ** 2))
@@ -173,7 +171,7 @@ def _fixed_points(stated: Any) -> Check:
     )
 
 
-def _root_places(stated: tuple[Any, Any, Any]) -> Check:
+def _root_places(stated: tuple[sympy.Expr, sympy.Expr, sympy.Expr]) -> Check:
     """Three real roots: one below stated[0], one in (stated[1], stated[2]), one above stated[2]."""
     low, left, right = stated
     cubic = fold.fixed_point_factors()[1]
@@ -186,7 +184,7 @@ def _root_places(stated: tuple[Any, Any, Any]) -> Check:
     )
 
 
-def _trivial_root(stated: Any) -> Check:
+def _trivial_root(stated: sympy.Expr) -> Check:
     """m = 3/2 solves e:fixm for those r at which the stated polynomial vanishes: 0 for every r."""
     value = certificates.value_at(fold.fixed_point_equation(), m, THREE_HALVES)
     cubic = certificates.value_at(fold.fixed_point_factors()[1], m, THREE_HALVES)

@@ -18,13 +18,13 @@ from singimpact.theory.plane_forms import cubic_terms, fold_form
 HALF, QUARTERS = sympy.Rational(1, 2), sympy.Rational(9, 4)
 
 
-def _involuted() -> Any:
+def _involuted() -> tuple[sympy.Expr, sympy.Expr]:
     """phi at a tangency by the other route: the launch velocity with the involution applied."""
     sheet = generic_sheet(1, 2)
     return sigma + t, fold.in_k(sheet.to_sympy(sheet.xdot))
 
 
-def _z_line(stated: tuple[Any, Any]) -> Check:
+def _z_line(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
     """(t on the branch of v_c = 0 other than t = 0, sigma on the line that phi takes to the v-axis)."""
     _, velocity = fold.p()
     line, to_axis = stated
@@ -62,17 +62,16 @@ def _identity_order(order: int) -> Check:
     )
 
 
-def _fold_form(stated: Any) -> Check:
+def _fold_form(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
     """Source and target changes take psi o p to (sigma, stated): computed to order 5, smooth by one quotient.
 
     With the horizon moved to eta = 0 and its image to 0, psi o p has the factor eta^2 (Hadamard's lemma, twice).
     """
     form = fold_form(5)
-    check = identity(lambda: form.normal, "the normal form reached")(stated)
     bend = sympy.diff(fold.psi_p()[1], eta, 2).subs({sigma: 0, eta: 0})
     return every(
         [
-            (check.evidence, check.holds),
+            identity(lambda: form.normal, "the normal form reached")(stated),
             (
                 f"d^2/d eta^2 of psi o p is {bend}, not 0: so it is -k eta^2 u with u smooth, u = 1 at w_*, and eta sqrt(u) for eta "
                 "removes what is left; both changes are computed to order 5",
@@ -84,11 +83,11 @@ def _fold_form(stated: Any) -> Check:
                 form.invertible,
             ),
         ],
-        witness=lambda: dict(check.witness or {"fails": "the residual"}),
+        witness=lambda: {"fails": "the residual"},
     )
 
 
-def first_component(stated: Any, order: Any) -> list[tuple[str, bool]]:
+def first_component(stated: sympy.Expr, order: Any) -> list[tuple[str, bool]]:
     """Whether the next sigma is `stated` + O(order) in the coordinates of e:pdef that keep the phase sigma.
 
     Parameters
@@ -107,7 +106,7 @@ def first_component(stated: Any, order: Any) -> list[tuple[str, bool]]:
     ]
 
 
-def bent(stated: Any) -> dict[str, str]:
+def bent(stated: sympy.Expr) -> dict[str, str]:
     """Numbers at which the next sigma in the coordinates of e:pdef, to degree 2, is not what is stated."""
     return sample(stated, next_sigma()) | {"coordinates": "those of e:pdef, to degree 2, lengths in units of k"}
 

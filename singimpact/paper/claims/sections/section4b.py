@@ -1,7 +1,5 @@
 """Section 4.1(b): tangency points with a' < 0; k = a'/6 < 0 and rays t = l sigma."""
 
-from typing import Any
-
 import sympy
 
 from singimpact.algebra.certificates import negative_on, positive_in, positive_on
@@ -19,7 +17,7 @@ ell, slope, mu, nu = sympy.symbols("ell p mu nu")
 THIRD, HALF = sympy.Rational(1, 3), sympy.Rational(1, 2)
 
 
-def on_ray() -> tuple[Any, Any]:
+def on_ray() -> tuple[sympy.Expr, sympy.Expr]:
     """p and q on t = l sigma: v of p over sigma^2, and v of q over the square of its own first component, at sigma = 0."""
     first, second = fold.phi()
     launch = sympy.factor(sympy.cancel(fold.p()[1].subs(t, ell * sigma) / sigma**2))
@@ -30,7 +28,7 @@ def on_ray() -> tuple[Any, Any]:
     return launch, landed
 
 
-def _on_rays(stated: tuple[Any, Any, Any, Any, Any]) -> Check:
+def _on_rays(stated: tuple[sympy.Expr, sympy.Expr, sympy.Expr, sympy.Expr, sympy.Expr]) -> Check:
     """p and q on t = l sigma to second order, and the monomial stated[4] that divides all that is left out.
 
     v_c(sigma, 0) = 0, so v_c and the impact velocity have the factor t, which is l sigma here: the factor l stays.
@@ -60,14 +58,14 @@ def _on_rays(stated: tuple[Any, Any, Any, Any, Any]) -> Check:
     stated_powers = tuple(sympy.Poly(monomial, sigma, ell).monoms()[0])
     return every(
         [
-            (check.evidence, check.holds),
+            check,
             ("y_c = v at t = 0, so v_c(sigma, 0) = 0 and both velocities have the factor t", vanish_at_launch()),
             (
                 f"to degree 4 what is left out has the factor {monomial} and no higher power",
                 divided and set(lowest) == {stated_powers},
             ),
         ],
-        witness=lambda: dict(check.witness or {"factor of what is left out": f"sigma^{lowest[0][0]} l^{lowest[0][1]}"}),
+        witness=lambda: {"factor of what is left out": f"sigma^{lowest[0][0]} l^{lowest[0][1]}"},
     )
 
 
@@ -76,7 +74,7 @@ def vanish_at_launch() -> bool:
     return is_zero(route.y_c(4).subs(t, 0) - route.v)
 
 
-def _positive_for_all(expression: Any, *, rate: bool = True) -> bool:
+def _positive_for_all(expression: sympy.Expr, *, rate: bool = True) -> bool:
     """A rational function of (l, r) is positive for l > 0 and 0 < r < 1; one of l alone, for l > 0."""
     return positive_in(expression, {ell: (0, sympy.oo)} | ({r: (0, 1)} if rate else {}))
 
@@ -105,7 +103,7 @@ def _continuous(side: int) -> Check:
     )
 
 
-def _sector(stated: tuple[Any, Any]) -> Check:
+def _sector(stated: tuple[int, int]) -> Check:
     """F lands where v >= 0 and t >= 0: for k < 0 that is stated[0] sigma + t >= 0, t >= 0."""
     factor, least = stated
     launch = sympy.cancel(fold.p()[1] / (-k * t))
@@ -121,7 +119,7 @@ def _sector(stated: tuple[Any, Any]) -> Check:
     )
 
 
-def _image_bounds(bound: Any) -> Check:
+def _image_bounds(bound: sympy.Expr) -> Check:
     """phi of the sector: with p = t/(sigma + t) in [0, 3/2], v/(sigma + t)^2 = k (3p - p^2) runs from 0 to bound a'."""
     ratio, edge = image_of_sector()
     return every(
@@ -138,7 +136,7 @@ def _image_bounds(bound: Any) -> Check:
     )
 
 
-def image_of_sector() -> tuple[Any, Any]:
+def image_of_sector() -> tuple[sympy.Expr, sympy.Expr]:
     """(v/(k s^2) of phi as a function of p = t/s, s = sigma + t; its value at the edge p = 3/2, where 3 sigma + t = 0)."""
     first, second = fold.phi()
     by_slope = {sigma: t * (1 - slope) / slope}
@@ -161,7 +159,7 @@ def _half_plane(stated: int) -> Check:
     )
 
 
-def _range(stated: Any) -> Check:
+def _range(stated: sympy.Expr) -> Check:
     """Rays 0 <= l <= stated(k, r) reach the upper edge v = -(9/4) r k sigma^2 of R T'' under p."""
     launch, _ = on_ray()
     short = sympy.factor(sympy.cancel((launch / -k).subs(ell, stated)) - sympy.Rational(9, 4) * r)
@@ -184,7 +182,7 @@ SLACK = (1 - r) / 3  # by how much the bounds of p~ and q~ leave their limits, r
 FOR_K, FOR_L = (sympy.factor(part * SLACK) for part in (-k * (3 + ell), -r * k * (3 + 2 * ell) * (1 + ell)))
 
 
-def _conditions(stated: tuple[Any, Any]) -> Check:
+def _conditions(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
     """(K_0, L_0): with K delta < K_0 and L delta < L_0 the bounds of p~ and q~ hold on 0 < sigma <= delta, and no earlier."""
     launch, landed = on_ray()
     low = _P * (2 + r) * THIRD * sigma**2
@@ -211,7 +209,7 @@ def _conditions(stated: tuple[Any, Any]) -> Check:
     )
 
 
-def _bound_p(stated: Any) -> Check:
+def _bound_p(stated: sympy.Expr) -> Check:
     """p~ > stated for 0 <= sigma <= delta, k < 0: the leading part of p~ - stated at sigma = 0 and just after."""
     launch, _ = on_ray()
     gap = sympy.expand(launch * sigma**2 - stated)
@@ -241,7 +239,7 @@ def _bound_p(stated: Any) -> Check:
     )
 
 
-def _bound_q(stated: Any) -> Check:
+def _bound_q(stated: sympy.Expr) -> Check:
     """q~ < stated for small sigma > 0, k < 0: leading coefficients of sigma^2."""
     _, landed = on_ray()
     gap = sympy.cancel((stated / sigma**2 - landed) / -k)
@@ -278,7 +276,7 @@ def _bound_q(stated: Any) -> Check:
 M = (3 + 2 * ell) / ((3 + ell) * (1 + ell) ** 2)
 
 
-def _ratio(stated: Any) -> Check:
+def _ratio(stated: sympy.Expr) -> Check:
     """q~/p~ < stated for small sigma: the limit of q~/p~ is r M."""
     launch, landed = on_ray()
     limit = sympy.cancel(landed / launch)
@@ -302,7 +300,7 @@ def _ratio(stated: Any) -> Check:
     )
 
 
-def _below_one(stated: Any) -> Check:
+def _below_one(stated: sympy.Expr) -> Check:
     return every(
         [
             (
@@ -314,7 +312,7 @@ def _below_one(stated: Any) -> Check:
     )
 
 
-def _r_inequality(stated: tuple[Any, Any]) -> Check:
+def _r_inequality(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
     small, large = stated
     return every(
         [("the difference is positive on (0, 1) (no root inside, by Sturm)", positive_on(large - small, r, 0, 1))],
@@ -326,7 +324,7 @@ def _r_inequality(stated: tuple[Any, Any]) -> Check:
     )
 
 
-def _contracted(stated: Any) -> Check:
+def _contracted(stated: sympy.Expr) -> Check:
     """The least upper bound over l > 0 and r in (0, 1) of lim q~/p~ = r M; for one r and l a constant below it serves."""
     launch, landed = on_ray()
     limit = sympy.cancel(landed / launch)

@@ -124,7 +124,7 @@ def _smoothly(stated: Any) -> Check:
     )
 
 
-def _epsilon(stated: tuple[int, Any]) -> Check:
+def _epsilon(stated: tuple[int, sympy.Expr]) -> Check:
     """G of (tau_* + sigma, 0), sigma < 0: the flight lands where 3 sigma + t = 0."""
     first, second = fold.phi()
     landed = first.subs(t, -3 * sigma)

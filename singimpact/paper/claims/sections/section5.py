@@ -27,25 +27,25 @@ def _sheet(which: str) -> Any:
     return sheet.to_sympy(sheet.v if which == "p" else sheet.xdot).subs(a2, -24 * ell)
 
 
-def _p(stated: tuple[Any, Any]) -> Check:
+def _p(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
     """p in (s, m) by the boundary value route with a = a' = 0 set first, and by the paper's own."""
     velocity = _sheet("p").subs({sigma: s, t: s * m})
-    first = identity(lambda: (s, velocity), "the solution of the boundary value problem")(stated)
-    second = identity(lambda: (s * swan.p_blown_up()[0], ell * s**3 * swan.p_blown_up()[1]))(stated)
     return every(
-        [(first.evidence, first.holds), (second.evidence, second.holds)],
-        witness=lambda: dict(first.witness or second.witness or {}),
+        [
+            identity(lambda: (s, velocity), "the solution of the boundary value problem")(stated),
+            identity(lambda: (s * swan.p_blown_up()[0], ell * s**3 * swan.p_blown_up()[1]))(stated),
+        ]
     )
 
 
-def _phi(stated: tuple[Any, Any]) -> Check:
+def _phi(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
     """phi in (s, m): launch velocity after the involution."""
     return identity(
         lambda: (s * (1 + m), _sheet("phi").subs({sigma: s, t: s * m})), "the launch velocity after the involution"
     )(stated)
 
 
-def _coordinates(time: Any) -> Check:
+def _coordinates(time: sympy.Expr) -> Check:
     """e:pdeg3 and s5-phi hold when the flight time is `time` in (s, m)."""
     launch = sympy.expand(_sheet("p").subs({sigma: s, t: time}))
     impact = sympy.expand(_sheet("phi").subs({sigma: s, t: time}))
@@ -83,7 +83,7 @@ def _intersections(count: int) -> Check:
     )
 
 
-def _place(stated: tuple[Any, Any]) -> Check:
+def _place(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
     low, high = stated
     polynomial = swan.fixed_point_polynomial()
     half = polynomial.subs(r, HALF)
@@ -114,7 +114,7 @@ def _slopes(sign: int) -> Check:
     return every([("f' - g' at m_* keeps one sign on (-1, 0), that is for every r in (0, 1)", found == sign)])
 
 
-def _jacobian(stated: Any) -> Check:
+def _jacobian(stated: sympy.MatrixBase) -> Check:
     """The entries but *, each as derived: d(mbar)/dm by implicit differentiation of s5-hbar."""
     derived = swan.Dh_bar()
     return identity(
@@ -258,7 +258,7 @@ def _repelling(stated: int) -> Check:
     )
 
 
-def _limit(stated: Any) -> Check:
+def _limit(stated: sympy.Expr) -> Check:
     """The limit of that eigenvalue along gamma, as a function of lambda."""
     matrix = DG_on_ray(2)
     residual = stated**2 - matrix.trace() * stated + matrix.det()

@@ -14,8 +14,8 @@ from singimpact.impact_oscillator import linear
 from singimpact.oscillator.model import Oscillator
 from singimpact.paper.claims.claim import Check, Statement, Trial, Trials, at_each, in_section
 from singimpact.paper.claims.sections.section6_exact import epsilon_check
-from singimpact.paper.claims.sections.section6_scaling import at, crossing, near_the_swan, regular_conic, scaling_check
-from singimpact.paper.claims.verifiers import every, is_zero, same
+from singimpact.paper.claims.sections.section6_scaling import at, crossing, persisting, regular_conic, scaling_check
+from singimpact.paper.claims.verifiers import every, is_zero, root_of_line, same
 from singimpact.paper.routes import unfolding as model
 from singimpact.paper.routes.implicit import v_c_swan
 from singimpact.paper.routes.unfolding import WEIGHTS, Weights, kappa, sigma, t
@@ -43,7 +43,7 @@ def _birth(stated: int) -> Check:
     )
 
 
-def zeros_by_clearance() -> tuple[Any, Any]:
+def zeros_by_clearance() -> tuple[sympy.Expr, sympy.Expr]:
     """(first, second) Taylor coefficient of delta(sigma), a(sigma, delta(sigma)) = 0, where a = a_sigma = 0, a'' != 0.
 
     a is any function of (sigma, delta), delta = c - c_0, with da/dc != 0, by its Taylor polynomial of degree 3.
@@ -94,11 +94,11 @@ def _side(stated: int) -> Check:
 def _lips(cusps: int) -> Check:
     """H is an ellipse, and p has cusps at exactly the points of H with v_tt = 0."""
     conic, second = model.horizon(), sympy.diff(model.launch_velocity(), t, 2)
-    line = sympy.cancel(-sympy.Poly(second, t).nth(0) / sympy.Poly(second, t).nth(1))
+    line = sympy.cancel(root_of_line(second, t))
     on_line = sympy.Poly(conic.subs(t, line), sigma)
     points = [(root, line.subs(sigma, root)) for root in on_line.real_roots()]
     good = [model.cusp_conditions(point) for point in points]
-    check = every(
+    return persisting(
         [
             (
                 "H is an ellipse (its quadratic form is definite), in lengths that shrink with the distance of the zeros",
@@ -108,11 +108,11 @@ def _lips(cusps: int) -> Check:
                 f"v_tt = 0 on it at {points}, both nondegenerate cusps",
                 all(g[0] == g[1] == 0 and 0 not in g[2:] for g in good) and len(points) == cusps,
             ),
-        ]
-    )
-    conditions = [("H has no singular point, and its form is definite", regular_conic())]
-    return near_the_swan(
-        check, [*conditions, *((f"v_ttt v_(sigma t) at {p}", g[2] * g[3]) for p, g in zip(points, good, strict=True))]
+        ],
+        [
+            ("H has no singular point, and its form is definite", regular_conic()),
+            *((f"v_ttt v_(sigma t) at {p}", g[2] * g[3]) for p, g in zip(points, good, strict=True)),
+        ],
     )
 
 
@@ -131,16 +131,14 @@ def _none(sign: int) -> Check:
     form = sympy.Poly(sympy.expand(sympy.cancel(-model.limit_launch() / (kappa * t))), model.e)
     slope, rest = form.nth(1), form.nth(0)
     positive = definite(rest, sigma, t) == 1 and slope.is_positive and form.degree() == 1
-    check = every(
+    return persisting(
         [
             (
                 f"v = -kappa t ({form.as_expr()}), for e >= 0 positive off the origin: v < 0 for t > 0",
                 bool(positive) and sign == -1,
             )
-        ]
-    )
-    return near_the_swan(
-        check, [("for e >= 0 the form outweighs terms of higher weight, being definite", bool(positive))]
+        ],
+        [("for e >= 0 the form outweighs terms of higher weight, being definite", bool(positive))],
     )
 
 
@@ -154,14 +152,14 @@ def _ends(stated: tuple[int, int]) -> Check:
     """Signs of a' at A and at B for kappa > 0."""
     slopes = [model.slope_of_acceleration(point[0]) / kappa for point in (model.A, model.B)]
     found = tuple(int(sympy.sign(slope)) for slope in slopes)
-    check = every(
+    return persisting(
         [(f"a' at A and B is {slopes[0]} kappa and {slopes[1]} kappa", found == stated)],
+        [(f"a'({name})", slope * kappa) for name, slope in zip("AB", slopes, strict=True)],
         witness=lambda: {"kappa": "1", "a'(A)": str(slopes[0]), "a'(B)": str(slopes[1])},
     )
-    return near_the_swan(check, [(f"a'({name})", slope * kappa) for name, slope in zip("AB", slopes, strict=True)])
 
 
-def _slopes_of_outline(stated: tuple[Any, Any]) -> Check:
+def _slopes_of_outline(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
     """Slope of p(H) at B and at E' = p(E): along H it is dv/dsigma, since v_t = 0 there."""
     rate = sympy.diff(model.launch_velocity(), sigma)
     slopes = tuple(
@@ -174,7 +172,7 @@ def _slopes_of_outline(stated: tuple[Any, Any]) -> Check:
             for curve in (model.horizon(), model.zero_set())
         ],
     )
-    check = every(
+    return persisting(
         [
             (f"E = {model.E} lies on H and Z, and its flight time is positive", on_both == (True, 0, 0)),
             (
@@ -182,11 +180,13 @@ def _slopes_of_outline(stated: tuple[Any, Any]) -> Check:
                 all(is_zero(x - y) for x, y in zip(slopes, stated, strict=True)),
             ),
             ("v = 0 at t = 0, where H goes through B: there the image is tangent to Pi_0", _at_rest_tangent()),
-        ]
+        ],
+        [
+            ("H and Z cross at E: their Jacobian", crossing(model.E)),
+            ("dv/dsigma at E'", slopes[1]),
+            ("dH/dsigma at B", at(sympy.diff(model.horizon(), sigma), model.B)),
+        ],
     )
-    along = at(sympy.diff(model.horizon(), sigma), model.B)
-    conditions = [("H and Z cross at E: their Jacobian", crossing(model.E)), ("dv/dsigma at E'", slopes[1])]
-    return near_the_swan(check, [*conditions, ("dH/dsigma at B", along)])
 
 
 def _at_rest_tangent() -> bool:
@@ -195,7 +195,7 @@ def _at_rest_tangent() -> bool:
     return at_rest[0] == 0 and same(2 * kappa * at_rest[1], model.acceleration())
 
 
-def _slopes_of_reset(stated: tuple[Any, Any, int]) -> Check:
+def _slopes_of_reset(stated: tuple[sympy.Expr, sympy.Expr, int]) -> Check:
     """Slope of phi(Z) at A and at E'' = phi(E), and the sign of v on phi(AE): phi(Z) = p(iota(Z)), on H again."""
     rate = sympy.diff(model.launch_velocity(), sigma)
     involuted = [(point[0] + point[1], -point[1]) for point in (model.A, model.E)]
@@ -204,7 +204,7 @@ def _slopes_of_reset(stated: tuple[Any, Any, int]) -> Check:
     speed = model.reset(middle)[1].subs(kappa, 1)
     common = _common_points()
     ends = {model.A, model.E} <= set(common) and model.E[1] > 0
-    check = every(
+    return persisting(
         [
             (
                 f"slopes {slopes[0]} at A and {slopes[1]} at E''",
@@ -217,21 +217,20 @@ def _slopes_of_reset(stated: tuple[Any, Any, int]) -> Check:
                 and int(sympy.sign(speed)) == stated[2]
                 and is_zero(sympy.expand(model.zero_set().subs({sigma: middle[0], t: middle[1]}, simultaneous=True))),
             ),
-        ]
+        ],
+        [
+            ("H and Z cross at A: their Jacobian", crossing(model.A)),
+            ("H and Z cross at E: their Jacobian", crossing(model.E)),
+            ("dv/dsigma at E''", slopes[1]),
+        ],
     )
-    conditions = [
-        (f"H and Z cross at {name}: their Jacobian", crossing(point))
-        for name, point in zip("AE", (model.A, model.E), strict=True)
-    ]
-    return near_the_swan(check, [*conditions, ("dv/dsigma at E''", slopes[1])])
 
 
 def _common_points() -> list[tuple[Any, Any]]:
     """The points where Z and H meet, by the factors of their difference, each of which is linear."""
     found = []
     for factor, _ in sympy.factor_list(model.horizon() - model.zero_set(), t)[1]:
-        line = sympy.Poly(factor, t)
-        time = -line.nth(0) / line.nth(1)
+        time = root_of_line(factor, t)
         places = sympy.Poly(model.zero_set().subs(t, time), sigma).real_roots()
         found += [(place, sympy.expand(time.subs(sigma, place))) for place in places]
     return sorted(found)

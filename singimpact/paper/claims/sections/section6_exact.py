@@ -13,7 +13,7 @@ import sympy
 from singimpact.algebra.certificates import definite, negative_on, positive_in, sign_chain, value_at
 from singimpact.algebra.derivations import At, substitution
 from singimpact.paper.claims.claim import Check
-from singimpact.paper.claims.sections.section6_scaling import at, crossing, near_the_swan
+from singimpact.paper.claims.sections.section6_scaling import at, crossing, near_the_swan, persisting
 from singimpact.paper.claims.verifiers import every, same
 from singimpact.paper.routes import unfolding as model
 from singimpact.paper.routes.unfolding import kappa, r, sigma, t, u, w
@@ -99,7 +99,7 @@ def _cells(conics: Iterable[Any]) -> list[dict[Any, Any]]:
     return cells
 
 
-def _between(polynomials: Iterable[Any], variable: Any) -> list[Any]:
+def _between(polynomials: Iterable[Any], variable: sympy.Expr) -> list[Any]:
     """Rational numbers between the real roots of polynomials, and beyond them."""
     product = sympy.Poly(sympy.prod(polynomials), variable, domain="QQ")
     squarefree = sympy.prod([factor for factor, _ in product.factor_list()[1]], start=sympy.Poly(1, variable))
@@ -110,7 +110,7 @@ def _between(polynomials: Iterable[Any], variable: Any) -> list[Any]:
     return [gaps[0][0] - 1, *inner, gaps[-1][1] + 1]
 
 
-def _inside(polynomial: Any, low: Any, high: Any) -> Any:
+def _inside(polynomial: Any, low: sympy.Expr, high: sympy.Expr) -> Any:
     """A rational number in [low, high] that is no root; all roots nearby lie outside."""
     for share in (sympy.Rational(1, 2), sympy.Rational(1, 3), sympy.Rational(2, 3)):
         place = low + share * (high - low)
@@ -139,7 +139,7 @@ def interval_check(stated: tuple[tuple[Any, Any], tuple[Any, Any]]) -> Check:
     product, total = (sympy.Poly(conic, t).nth(n) for n in (0, 2))
     heights = tuple((end, max(sympy.Poly(conic.subs(sigma, end), t).real_roots())) for end in (-1, 1))
     rise = sympy.diff(conic, t)
-    check = every(
+    return persisting(
         [
             (
                 "where v = 0 x - c is kappa u^2 Z(sigma, u), so the first hit is the first positive u with Z(sigma, u) = 0",
@@ -150,11 +150,15 @@ def interval_check(stated: tuple[tuple[Any, Any], tuple[Any, Any]]) -> Check:
                 negative_on(product, sigma, -1, 1) and total.is_positive,
             ),
             (f"the arc runs from {heights[0]} to {heights[1]}", heights == stated),
-        ]
+        ],
+        [
+            ("dZ/dt at C", at(rise, model.C)),
+            ("dZ/dt at B", at(rise, model.B)),
+            ("dZ/dsigma at A", at(sympy.diff(conic, sigma), model.A)),
+            ("dZ/dsigma at B", at(sympy.diff(conic, sigma), model.B)),
+            ("Z has a definite form", definite(conic + 6, sigma, t) == 1),
+        ],
     )
-    conditions = [(f"dZ/dt at {name}", at(rise, end)) for name, end in (("C", model.C), ("B", model.B))]
-    across = [(f"dZ/dsigma at {n}", at(sympy.diff(conic, sigma), p)) for n, p in (("A", model.A), ("B", model.B))]
-    return near_the_swan(check, [*conditions, *across, ("Z has a definite form", definite(conic + 6, sigma, t) == 1)])
 
 
 def chatter_check(stated: Any) -> Check:
@@ -223,7 +227,7 @@ def epsilon_check(stated: int) -> Check:
     changes = sign_chain(difference, z, ((-quarter, 1), (quarter, -1)), {r: (0, 1)})
     falls = positive_in(-sympy.diff(difference, z), {z: (-quarter, quarter), r: (0, 1)})
     bend = value_at(LANDING / (1 + 4 * z) ** 2, z, -quarter)
-    check = every(
+    return persisting(
         [
             (f"v = {OUTLINE} on p(BE), r ({LANDING}) on R phi(AE), in units of {unit}, at sigma = w z", all(held)),
             (
@@ -231,16 +235,16 @@ def epsilon_check(stated: int) -> Check:
                 changes and falls and stated == 1,
             ),
             (f"v = {bend} (1 + 4 z)^2 + ... on phi(AE) at A: tangent to Pi_0", bool(bend > 0)),
-        ]
+        ],
+        [
+            ("the difference falls where it is 0", falls),
+            ("H and Z cross at A: their Jacobian", crossing(model.A)),
+            ("H and Z cross at E: their Jacobian", crossing(model.E)),
+        ],
     )
-    conditions = [
-        ("the difference falls where it is 0", falls),
-        ("H and Z cross at A: their Jacobian", crossing(model.A)),
-    ]
-    return near_the_swan(check, [*conditions, ("H and Z cross at E: their Jacobian", crossing(model.E))])
 
 
-def _on_conic(expression: Any, place: dict[Any, Any], value: Any) -> bool:
+def _on_conic(expression: sympy.Expr, place: dict[Any, Any], value: Any) -> bool:
     """Whether a function is what is said where w^2 (1 + 2 z^2) = 18, with its certificate."""
     difference = sympy.expand(expression.subs(place, simultaneous=True) - value)
     if not sympy.rem(sympy.Poly(difference, w), sympy.Poly(MEET[0], w)).is_zero:

@@ -13,8 +13,8 @@ from singimpact.paper.claims.sections.section6_exact import (
     interval_check,
     visible_check,
 )
-from singimpact.paper.claims.sections.section6_scaling import at, near_the_swan
-from singimpact.paper.claims.verifiers import every, is_zero, same
+from singimpact.paper.claims.sections.section6_scaling import at, persisting
+from singimpact.paper.claims.verifiers import every, is_zero, root_of_line, same
 from singimpact.paper.routes import unfolding as model
 from singimpact.paper.routes.unfolding import kappa, sigma, t, u
 from singimpact.paper.trials import universal_orbits
@@ -22,11 +22,11 @@ from singimpact.paper.trials.true_orbits import lambda_of
 from singimpact.theory.multipliers import lambda_, mu_of_lambda
 
 
-def cusp_above(point: tuple[Any, Any], tangency: tuple[Any, Any], name: str) -> Check:
+def cusp_above(point: tuple[sympy.Expr, sympy.Expr], tangency: tuple[sympy.Expr, sympy.Expr], name: str) -> Check:
     """Whether a point is a cusp point of p that phi takes to a tangency point."""
     conditions = model.cusp_conditions(point)
     image = model.reset(point)
-    check = every(
+    return persisting(
         [
             (
                 f"v_t = {conditions[0]}, v_tt = {conditions[1]}, v_ttt = {conditions[2]}, v_(sigma t) = {conditions[3]}: a cusp of p",
@@ -34,10 +34,7 @@ def cusp_above(point: tuple[Any, Any], tangency: tuple[Any, Any], name: str) -> 
             ),
             (f"phi takes it to {image}, {name} is {tangency}", image == model.project(tangency)),
             ("where v_t = v_tt = 0 a flight lands at rest at a zero of a", _lands_at_rest()),
-        ]
-    )
-    return near_the_swan(
-        check,
+        ],
         [
             ("v_ttt v_(sigma t) there", conditions[2] * conditions[3]),
             (f"a'({name})", model.slope_of_acceleration(tangency[0])),
@@ -62,7 +59,7 @@ def _images(stated: tuple[tuple[Any, Any], tuple[Any, Any]]) -> Check:
     end = model.reset(model.C)
     conic = model.horizon()
     turning = sympy.diff(conic, t) - sympy.diff(conic, sigma)
-    check = every(
+    return persisting(
         [
             ("x-dot vanishes on H", on_axis),
             (f"phi(A), phi(D) are at {ends}", ends == stated[0]),
@@ -74,18 +71,20 @@ def _images(stated: tuple[tuple[Any, Any], tuple[Any, Any]]) -> Check:
                 f"phi(C) = {end}, with v < 0 for kappa < 0",
                 end == stated[1] and negative_on(end[1], kappa, -sympy.oo, 0),
             ),
-        ]
+        ],
+        [
+            ("d(sigma + t) along H at A", at(turning, model.A)),
+            ("d(sigma + t) along H at D", at(turning, model.D)),
+            ("dZ/dt at C", at(sympy.diff(model.zero_set(), t), model.C)),
+            ("x' at phi(C)", end[1]),
+        ],
     )
-    conditions = [(f"d(sigma + t) along H at {name}", at(turning, p)) for name, p in (("A", model.A), ("D", model.D))]
-    fall = at(sympy.diff(model.zero_set(), t), model.C)
-    return near_the_swan(check, [*conditions, ("dZ/dt at C", fall), ("x' at phi(C)", end[1])])
 
 
 def _turning_points() -> list[tuple[Any, Any]]:
     """The points of H at which sigma + t is stationary along it: v of H's tangent, (H_t, -H_sigma), has sum 0."""
     conic = model.horizon()
-    turning = sympy.Poly(sympy.diff(conic, t) - sympy.diff(conic, sigma), t)  # a line
-    line = -turning.nth(0) / turning.nth(1)
+    line = root_of_line(sympy.diff(conic, t) - sympy.diff(conic, sigma), t)
     return [(root, line.subs(sigma, root)) for root in sympy.Poly(conic.subs(t, line), sigma).real_roots()]
 
 
@@ -98,7 +97,7 @@ def _shadow_velocity(sign: int) -> Check:
     speed = sympy.diff(factored, u).subs(u, model.shadow())
     cofactor = sympy.cancel(factored / (u * (u - t) ** 2))
     cusp = model.cusp_conditions(model.D)
-    check = every(
+    return persisting(
         [
             ("the factorisation holds on H", is_zero(rest.as_expr())),
             (f"t_1 = t_0 only at t_0 = {max(meeting)}, which is D", max(meeting) == model.D[1]),
@@ -112,20 +111,19 @@ def _shadow_velocity(sign: int) -> Check:
                 and same(speed, kappa * model.shadow() * (model.shadow() - t) ** 2)
                 and negative_on(sympy.cancel(speed / model.shadow() / (model.shadow() - t) ** 2), kappa, -sympy.oo, 0),
             ),
-        ]
+        ],
+        [
+            ("d/du of (x - c)/(u (u - t_0)^2)", sympy.diff(cofactor, u)),
+            ("v_ttt v_(sigma t) at D", cusp[2] * cusp[3]),
+        ],
     )
-    conditions = [
-        ("d/du of (x - c)/(u (u - t_0)^2)", sympy.diff(cofactor, u)),
-        ("v_ttt v_(sigma t) at D", cusp[2] * cusp[3]),
-    ]
-    return near_the_swan(check, conditions)
 
 
 def _cusp(stated: tuple[Any, Any]) -> Check:
     """C'' = phi(C). It is a cusp of P: p of the mirror image of D."""
     mirror = (-model.D[0], -model.D[1])
     conditions = model.cusp_conditions(mirror)
-    check = every(
+    return persisting(
         [
             (
                 "the mirror image of D is a cusp point of p",
@@ -133,10 +131,9 @@ def _cusp(stated: tuple[Any, Any]) -> Check:
             ),
             (f"its image is {model.project(mirror)} = phi(C)", model.project(mirror) == model.reset(model.C) == stated),
             ("where v_t = v_tt = 0 a flight lands at rest at a zero of a", _lands_at_rest()),
-        ]
+        ],
+        [("v_ttt v_(sigma t) there", conditions[2] * conditions[3]), ("a'(A)", model.slope_of_acceleration(-1))],
     )
-    persists = [("v_ttt v_(sigma t) there", conditions[2] * conditions[3]), ("a'(A)", model.slope_of_acceleration(-1))]
-    return near_the_swan(check, persists)
 
 
 def _tangent(order: int) -> Check:

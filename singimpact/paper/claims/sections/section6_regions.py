@@ -9,14 +9,14 @@ from singimpact.algebra.derivations import At, substitution
 from singimpact.paper.claims.claim import Check, Statement
 from singimpact.paper.claims.sections.section6 import TRIALS as TRIALS, claim_6
 from singimpact.paper.claims.sections.section6_negative import cusp_above
-from singimpact.paper.claims.sections.section6_scaling import crossing, near_the_swan
+from singimpact.paper.claims.sections.section6_scaling import crossing, persisting
 from singimpact.paper.claims.verifiers import every, is_zero, same
 from singimpact.paper.routes import unfolding as model
 from singimpact.paper.routes.unfolding import kappa, sigma, t
 from singimpact.paper.trials import universal_orbits
 
 
-def _over(conic: Any, direction: Any, ends: tuple[tuple[Any, Any], tuple[Any, Any]]) -> bool:
+def _over(conic: sympy.Expr, direction: sympy.Expr, ends: tuple[tuple[Any, Any], tuple[Any, Any]]) -> bool:
     """Whether an arc of a conic between two ends is a graph over `direction`, a linear form that no point of it turns at.
 
     The arc is the one with times between those of its ends; the points of the conic where the form is stationary along
@@ -37,7 +37,7 @@ def _graphs(stated: tuple[int, int]) -> Check:
     launch, landing = (velocity.subs(kappa, 1) for velocity in (model.launch_velocity(), model.impact_velocity()))
     signs = (sympy.sign(sympy.expand(launch.subs(middle))), sympy.sign(sympy.expand(landing.subs(other))))
     on_arcs = is_zero(model.horizon().subs(middle)) and is_zero(sympy.expand(model.zero_set().subs(other)))
-    check = every(
+    return persisting(
         [
             (
                 "p(BE) is a graph over sigma: H turns in no point between",
@@ -53,10 +53,9 @@ def _graphs(stated: tuple[int, int]) -> Check:
                 "bounds a simply connected region",
                 _ends_alone(),
             ),
-        ]
+        ],
+        [("the Jacobian of H and Z at E", crossing(model.E)), *_tangencies()],
     )
-    conditions = [("the Jacobian of H and Z at E", crossing(model.E)), *_tangencies()]
-    return near_the_swan(check, conditions)
 
 
 def _ends_alone() -> bool:
@@ -69,19 +68,19 @@ def _tangencies() -> list[tuple[str, Any]]:
     return [(f"a'({name})", model.slope_of_acceleration(point[0])) for name, point in (("A", model.A), ("B", model.B))]
 
 
-def _cusp_of_phi(point: tuple[Any, Any]) -> Check:
+def _cusp_of_phi(point: tuple[sympy.Expr, sympy.Expr]) -> Check:
     """v = 0, a = 0, a' != 0 at the launch and x-dot != 0 at the landing: a cusp of phi (p:phising-cusp)."""
     point_ = {sigma: point[0], t: point[1]}
     launch, landing = model.launch_velocity().subs(point_), sympy.expand(model.impact_velocity().subs(point_))
     pressed = model.acceleration().subs(sigma, point[0])
-    check = every(
+    return persisting(
         [
             (f"a flight from rest, v = {launch}, t = {point[1]} != 0", is_zero(launch) and point[1] != 0),
             (f"at a zero of a: {pressed}", is_zero(pressed)),
             (f"which lands with x-dot = {landing}", not is_zero(landing)),
-        ]
+        ],
+        [("a' at the launch", model.slope_of_acceleration(point[0])), ("x-dot", landing)],
     )
-    return near_the_swan(check, [("a' at the launch", model.slope_of_acceleration(point[0])), ("x-dot", landing)])
 
 
 def _swallowtail(stated: dict[int, tuple[int, int]]) -> Check:
@@ -112,7 +111,7 @@ def _swallowtail(stated: dict[int, tuple[int, int]]) -> Check:
     square = sympy.Symbol("s_s")
     substitution(At(sympy.cancel(steep / s).subs(s**2, square), {square: doubled}), 0)
     substitution(At(flat, {s: -s}), flat)
-    check = every(
+    return persisting(
         [
             (
                 f"dR/ds = {sympy.factor(sympy.diff(rest, s))}: it vanishes at the zeros of a alone",
@@ -123,10 +122,9 @@ def _swallowtail(stated: dict[int, tuple[int, int]]) -> Check:
                 "the flights from rest at -s and s are one where s^2 = -3e",
                 is_zero(sympy.rem(steep, s**2 - doubled, s)) and is_zero(flat - flat.subs(s, -s)),
             ),
-        ]
+        ],
+        [*_tangencies(), (f"a at s^2 = {doubled}", sympy.expand(pressed.subs({s: sympy.sqrt(3), model.e: -1})))],
     )
-    at_crossing = [(f"a at s^2 = {doubled}", sympy.expand(pressed.subs({s: sympy.sqrt(3), model.e: -1})))]
-    return near_the_swan(check, [*_tangencies(), *at_crossing])
 
 
 REGIONS = (

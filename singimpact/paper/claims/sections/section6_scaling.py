@@ -6,7 +6,7 @@ persist for small H: each by the implicit function theorem or by compactness, on
 decides these numbers.  Where a quadratic form is definite, nothing else is near the swan either: it outweighs the rest.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -39,7 +39,19 @@ def near_the_swan(check: Check, conditions: Named) -> Check:
     return replace(check, evidence=f"{check.evidence}; {persists}", transverse=tuple(name for name, _ in conditions_))
 
 
-def nonzero(value: Any) -> bool:
+def persisting(
+    checks: Sequence[tuple[str, bool]], conditions: Named, witness: Callable[[], dict[str, str]] | None = None
+) -> Check:
+    """One check in the model from several named ones, with the conditions by which its statement persists.
+
+    Parameters
+    ----------
+    checks, witness : as of `every`. conditions : as of `near_the_swan`.
+    """
+    return near_the_swan(every(checks, witness=witness), conditions)
+
+
+def nonzero(value: sympy.Expr) -> bool:
     """Whether a number times a power of kappa is not 0; other expressions are not decided, and count as 0.
 
     Examples
@@ -51,12 +63,12 @@ def nonzero(value: Any) -> bool:
     return len(terms) == 1 and bool(terms[0][1].is_number) and terms[0][1] != 0
 
 
-def at(expression: Any, point: tuple[Any, Any]) -> Any:
+def at(expression: Any, point: tuple[sympy.Expr, sympy.Expr]) -> Any:
     """An expression in (sigma, t) at a point."""
     return sympy.expand(sympy.sympify(expression).subs({sigma: point[0], t: point[1]}, simultaneous=True))
 
 
-def crossing(point: tuple[Any, Any]) -> Any:
+def crossing(point: tuple[sympy.Expr, sympy.Expr]) -> Any:
     """The Jacobian of the horizon and the zero set at a point: not 0 where they cross transversely."""
     return at(sympy.Matrix([model.horizon(), model.zero_set()]).jacobian([sigma, t]).det(), point)
 
