@@ -231,20 +231,20 @@ class Closing:
         return Loop(miss, slope, wrap, self.clocked, self.grazes(point))
 
     def product(self, point: Array) -> float:
-        """The product of the multipliers, det D G over all impacts; nan at a graze."""
-        launches, _, speeds, times = np.array(self.flights(point)).T
-        values = self.values(point)
+        """The product of the multipliers, by Liouville's formula at every impact; nan at a graze."""
         if self.plastic:
             return 0.0
-        ends = [
-            self.family.end(values, tau, v, time).place[1] for tau, v, time in zip(launches, speeds, times, strict=True)
-        ]
-        velocities = np.array(ends)
-        if not (velocities < 0).all() or not (speeds != 0).all():
-            return float("nan")
-        osc = self.family.oscillator(values)
-        sizes = log_determinant(osc, launches, np.abs(speeds), times, velocities)
-        return float(np.prod(np.sign(speeds)) * np.exp(sizes.sum()))
+        size, sign, values = 0.0, 1.0, self.values(point)
+        for i, (tau, _, v, time) in enumerate(self.flights(point)):
+            leg = self.leg(i, values)
+            velocity = leg.family.end(values, tau, v, time).place[1]
+            if not v or not (velocity if leg.gap is None else -velocity) < 0:
+                return float("nan")
+            # with the restitution of the wall that is hit: one model of one wall has the flight, the other the law
+            osc = leg.family.one_wall(values).replace(restitution=leg.law.one_wall(values).restitution)
+            size += float(log_determinant(osc, *(np.array([x]) for x in (tau, abs(v), time, -abs(velocity))))[0])
+            sign *= np.sign(v)
+        return float(sign * np.exp(size))
 
     def newton(self, point: Array, rounds: int = 30, tolerance: float = 4e-15) -> tuple[Array, Loop] | None:
         """The orbit near a point at its numbers; None if Newton's method does not converge."""

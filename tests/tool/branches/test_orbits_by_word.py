@@ -140,6 +140,16 @@ def test_points_are_true_orbits_where_they_are_visible(osc, word, k, over):
             assert same == found.visible[i] or i in touching
 
 
+@pytest.mark.parametrize(("d", "A", "upper"), [(4, 2, "0.475"), (6, 4, "0.633")])
+def test_small_multipliers_keep_their_digits(d, A, upper):
+    """An orbit of one impact at each wall leaves (r R)^2 exp(-d T) of an area; a determinant has lost half of it."""
+    osc = si.ImpactOscillator(f"{d}*xdot", f"{A}*cos(t)", "-" + upper, "0.5", upper=upper)
+    (orbit,) = osc.periodic("lu", 1)
+    first, second = orbit.multipliers
+    assert first * second == pytest.approx(0.5**4 * np.exp(-d * 2 * np.pi), rel=1e-12)
+    assert abs(second) < 1e-9 * abs(first)
+
+
 def test_a_graze_leads_to_the_orbit_without_the_impact_and_a_hidden_one_to_that_with_it():
     words = {}
     damped = si.linear("1.7", "-0.3", "0.6", damping="0.1", upper="0.3")
