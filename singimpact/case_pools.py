@@ -170,8 +170,7 @@ class Cluster(Place):
         """Begin to compute some cases. They are sent as bytes, because Dask takes a tuple among them for a task."""
         import cloudpickle
 
-        payload = _packed(function, items, cloudpickle.dumps)
-        return self.executor.submit(unpacked, payload, seconds)
+        return self.executor.submit(unpacked, _packed(function, items, cloudpickle.dumps), seconds)
 
 
 class Processes(Place):

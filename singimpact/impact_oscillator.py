@@ -434,8 +434,7 @@ class ImpactOscillator(Oscillator):
         if states.shape:
             raise refuse("tau", tau, "one number")
         start = float(states.tau[0])
-        lifted = start if self.acceleration(tau) > 0 else release(self, start)
-        return lifted + float(np.ravel(states.turns)[0])
+        return (start if self.acceleration(tau) > 0 else release(self, start)) + float(np.ravel(states.turns)[0])
 
     @takes_two_walls
     def launch(self, x: Any, xdot: Any, t: Any, *, horizon: Any = None) -> Launched:

@@ -223,8 +223,7 @@ def _confirmed(branch: Branch, at: Array) -> Branch:
     seen, notes = branch.visible.copy(), list(branch.notes)
     edges = np.flatnonzero(np.diff(np.concatenate([[False], seen, [False]]).astype(int)))
     for begin, end in edges.reshape(-1, 2).tolist():
-        middle = (begin + end) // 2
-        if not orbit_of(closing, at[middle]).visible:
+        if not orbit_of(closing, at[(begin + end) // 2]).visible:
             seen[begin:end] = False
             notes.append(f"points {begin} to {end - 1} meet the wall earlier than the closing conditions say: virtual")
     return replace(branch, visible=seen, notes=tuple(notes))

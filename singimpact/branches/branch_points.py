@@ -186,8 +186,7 @@ def halves(closing: AnyClosing, at: Array) -> Array:
         return np.zeros(1)
     scales = closing.scales(at)
     if not isinstance(closing, Closing):
-        values = closing.launch(at)
-        end = closing.family.end(values, 0.0, float(at[1]), closing.span(at, 0) / 2)
+        end = closing.family.end(closing.launch(at), 0.0, float(at[1]), closing.span(at, 0) / 2)
         return np.asarray((end.place - np.array([0.0, at[1]])) / scales[:2])
     period = closing.period(at)
     times, speeds = (
@@ -203,8 +202,7 @@ def branch_point(search: StepSearch, crossing: Crossing) -> BranchPoint | None:
     low, high = crossing.low.point.at, crossing.high.point.at
     differences = halves(closing, low), halves(closing, high)
     sizes = [float(np.linalg.norm(half)) for half in differences]
-    is_doubled = len(differences[0]) > 1 and (max(sizes) < SETTINGS.equal or float(differences[0] @ differences[1]) < 0)
-    if is_doubled:
+    if len(differences[0]) > 1 and (max(sizes) < SETTINGS.equal or float(differences[0] @ differences[1]) < 0):
         doubling = _doubling(search, crossing, max(sizes) < SETTINGS.equal)
         if doubling is not None or closing.k % 2 == 0:
             return doubling
@@ -223,8 +221,7 @@ def _doubling(search: StepSearch, crossing: Crossing, equal: bool) -> BranchPoin
         times, speeds = (both[: n // 2] + both[n // 2 :] - shift) / 2, near[n : 2 * n].reshape(2, -1).mean(axis=0)
         guess = np.concatenate([half.point(times, speeds, shift), near[2 * n :]])
     places = [*range(n // 2), *range(n, n + n // 2), 2 * n] if n else [0, 1, 2]
-    sizes = scales[places]
-    curve = Curve(Equations(half), sizes, 1.0)
+    curve = Curve(Equations(half), scales[places], 1.0)
     start = curve.begin(guess)
     if start is None:
         return None

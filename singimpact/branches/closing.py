@@ -455,8 +455,7 @@ class FreeClosing:
         """All local minima of the orbit: time and x - c, each once."""
         values = self.launch(point)
         span = self.span(point)
-        wall = self.values(point).get(CLEARANCE, self.family.start[CLEARANCE])
-        rise = float(point[0]) - wall
+        rise = float(point[0]) - self.values(point).get(CLEARANCE, self.family.start[CLEARANCE])
         turns = minima_of(self.family, values, (0.0, float(point[1]), 1.5 * span))
         # one span that begins away from 0: a minimum at time 0 is not between two samples
         turns = [turn for turn in turns if not turn[0] < span / 4 and not turn[0] >= 5 * span / 4]

@@ -165,8 +165,7 @@ def event_curve(
         if half is None or np.abs(halves(full, at)).max() > HALVES:
             raise refuse("event", event, "a pitchfork of an orbit whose halves are equal, or mirror images")
         closing, at = half, at[[*range(half.n), *range(full.n, full.n + half.n), -2, -1]]
-    walk = _Walk(closing, event, ends, step or SETTINGS.step, points)
-    return walk.curve(at, full)
+    return _Walk(closing, event, ends, step or SETTINGS.step, points).curve(at, full)
 
 
 class _Walk(OrbitCurve):
@@ -295,8 +294,7 @@ class _Walk(OrbitCurve):
         n = self.closing.n
         if float(at[n : 2 * n].min()) < -1e-9 * float(self.scales[n]):
             return False
-        low = min(height for _, height in self.closing.heights(at))
-        return low >= -1e-9 * float(self.scales[n])
+        return min(height for _, height in self.closing.heights(at)) >= -1e-9 * float(self.scales[n])
 
 
 def _merged(crossings: list[tuple[float, str, Point]], length: float) -> list[Special]:

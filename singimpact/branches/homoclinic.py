@@ -405,8 +405,7 @@ class _Search:
                     matrix[[1 + 2 * i - at, 2 + 2 * i - at], at] = slope[:, column]
             if i < len(slopes) - 1:
                 matrix[0, [2 * i + 1, 2 * i + 2]] = -1.0
-        end = -self.stable.arc.slope(float(s[1]))
-        matrix[[0, 1], count - 1] = end
+        matrix[[0, 1], count - 1] = -self.stable.arc.slope(float(s[1]))
         return np.asarray(solve_banded((2, 1), matrix, miss.ravel()))
 
     def _angles(self, slopes: Array, s: Array) -> Array:

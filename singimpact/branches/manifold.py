@@ -261,8 +261,7 @@ class _Grown:
 
     def _step(self, points: Array, generation: int) -> Array:
         """The next generation; the periods of the orbit are taken off, so that times stay small."""
-        osc = self.saddle.oscillator
-        points = (before if self.stable else model_step)(osc, points, self.horizon)
+        points = (before if self.stable else model_step)(self.saddle.oscillator, points, self.horizon)
         if (generation + 1) % int(self.saddle.n) == 0:
             span = self.saddle.k * self.window.sides[0]
             points = points + np.array([span if self.stable else -span, 0.0])

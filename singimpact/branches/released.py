@@ -110,8 +110,7 @@ class Releases:
         (1, True)
         """
         model = self.model(value)
-        phases = lift_offs(model) if near is None else self.followed(model, near)
-        return self.orbit(model, phases, index)
+        return self.orbit(model, lift_offs(model) if near is None else self.followed(model, near), index)
 
     def orbit(self, model: Oscillator, phases: tuple[float, ...], index: int) -> Released:
         """The orbit released at phases[index]."""

@@ -144,8 +144,7 @@ def phases_and_speeds(osc: Oscillator, k: int) -> tuple[Array, Array] | None:
     flights = family(osc)
     assert isinstance(flights, LinearFamily)
     period, r = as_float(osc.period), as_float(osc.restitution)
-    time = k * period
-    flow = flights.flow({}, time)[:2]
+    flow = flights.flow({}, k * period)[:2]
     factor, share = (1.0, 1 / r) if r else (0.0, 1.0)  # the second equation times r: v = 0 for r = 0
     by_v = np.array([flow[0, 1], factor * flow[1, 1] + share])
     waves = linear_waves(osc)

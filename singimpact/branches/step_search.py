@@ -90,8 +90,7 @@ class EventTests:
             return stored or {}
         state = self.state(point)
         state.turns = self.minima(point.at)
-        tests = {Key(kind, i, j): test for kind in kinds for i, j, test in kind.tests(state)}
-        return (stored or {}) | tests
+        return (stored or {}) | {Key(kind, i, j): test for kind in kinds for i, j, test in kind.tests(state)}
 
     def value(self, kind: EventKind, impact: int, point: Point) -> float:
         """One test function, which is no minimum of a flight, at a point of the branch."""

@@ -345,8 +345,7 @@ class _Search:
         at = np.append(followed.parameter - value, np.nan)
         for i in np.flatnonzero(at[:-1] * at[1:] <= 0).tolist():
             share = at[i] / (at[i] - at[i + 1]) if at[i] != at[i + 1] else 0.0
-            near = followed.orbit(i if share < 0.5 else i + 1)
-            if _alike(near, orbit):
+            if _alike(followed.orbit(i if share < 0.5 else i + 1), orbit):
                 return True
         return False
 

@@ -153,8 +153,7 @@ def _sealed(statement: str, model: Oscillator, numbers: dict[str, Any]) -> Certi
             f"the {statement} is not certified in a file: f = {model.f} depends on t, and of such a model the second "
             f"program checks {', '.join(IN_TIME)}"
         )
-    touches = numbers.get("kind") in TOUCHING
-    if model.upper is not None and (statement not in BETWEEN or touches):
+    if model.upper is not None and (statement not in BETWEEN or numbers.get("kind") in TOUCHING):
         raise InputError(
             f"the {statement} is not certified in a file: of a model with two walls the second program checks "
             f"{', '.join(BETWEEN)} without a graze"

@@ -96,8 +96,7 @@ def form_of(force: Expression, forcing: Expression) -> LinearForm | None:
 
 def _affine(tree: Expression) -> tuple[Expression, Expression, Expression] | None:
     """(k, d, m) of k x + d xdot + m."""
-    names = names_in(tree) & MOVING
-    if not names:
+    if not names_in(tree) & MOVING:
         return number(0), number(0), tree
     if isinstance(tree, Name):
         return number(int(tree.name == "x")), number(int(tree.name == "xdot")), number(0)

@@ -190,8 +190,7 @@ def reduced(tau: Array, period: Expression) -> Array:
         turns = np.rint((result[far] - left) / size)
         phases = left - turns * rest
         near = np.minimum(np.abs(phases), np.abs(np.abs(phases) - size / 2))  # to a multiple, or half-way between two
-        doubtful = (np.abs(turns) > TURNS) | (near < size / TURNS)
-        for index in np.flatnonzero(doubtful).tolist():
+        for index in np.flatnonzero((np.abs(turns) > TURNS) | (near < size / TURNS)).tolist():
             phases[index] = phase_of(Fraction(float(result[far[index]])), period)
         result[far] = phases
     return result

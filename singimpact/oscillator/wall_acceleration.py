@@ -200,8 +200,7 @@ def around(osc: Oscillator, start: Any, order: int, balls: Balls) -> Any:
 
 
 def _exponent(tau: Expression) -> int:
-    size = abs(as_float(tau))
-    return 64 + max(int(np.frexp(size)[1]), 0)
+    return 64 + max(int(np.frexp(abs(as_float(tau)))[1]), 0)
 
 
 def sign_of_acceleration(osc: Oscillator, tau: Expression, order: int = 0) -> int:

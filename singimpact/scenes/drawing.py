@@ -187,8 +187,7 @@ def _turns(limits: tuple[float, float], period: float, fresh: bool) -> list[floa
 
 
 def _saddle(found: Manifold, turn: float, axes: Axes) -> None:
-    period = found.window.x[1]
-    tau = np.mod(np.asarray(found.saddle.tau, dtype=float), period) + turn
+    tau = np.mod(np.asarray(found.saddle.tau, dtype=float), found.window.x[1]) + turn
     v = np.asarray(found.saddle.v, dtype=float)
     axes.plot(tau, v, "s", **OPEN, markersize=SETTINGS.saddle, zorder=6, gid="saddle")
 

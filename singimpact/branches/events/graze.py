@@ -108,8 +108,7 @@ class Graze(TouchingKind):
 
     def equation(self, state: OrbitState) -> float:
         """v of the impact that grazes, over its scale."""
-        n = state.closing.n
-        return self.value(state, state.impact) / float(state.scales[n])
+        return self.value(state, state.impact) / float(state.scales[state.closing.n])
 
     def gradient(self, state: OrbitState) -> Array:
         """1 over the scale, at the velocity."""

@@ -129,8 +129,7 @@ def periodic_orbit(model: Model, content: dict[str, Any], bits: int) -> None:
     require_period(model.f, content["period"])
     numbers = [state[name] for state in states for name in ("tau", "v")]
     point, radii = ([ball(Fraction(number[field])) for number in numbers] for field in ("value", "radius"))
-    span = Formula(content["period"], model.g.parameters)() * k
-    orbits = Orbits(model, span, bits, walls=walls_of(content))
+    orbits = Orbits(model, Formula(content["period"], model.g.parameters)() * k, bits, walls=walls_of(content))
     near = ball(Fraction(content["unique_within"]))
     require_shortest(point, radii, orbits.span, k)
     total = return_map(orbits.alone(point, [[near] * len(point), radii]))

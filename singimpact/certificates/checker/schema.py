@@ -342,8 +342,7 @@ def launch(content: dict[str, Any]) -> str:
 
 def impacts(content: dict[str, Any]) -> str:
     """The number of impacts, or between two walls their word."""
-    word = "".join(state.get("wall", "")[:1] for state in content["states"])
-    return word or str(len(content["states"]))
+    return "".join(state.get("wall", "")[:1] for state in content["states"]) or str(len(content["states"]))
 
 
 def event(content: dict[str, Any]) -> str:
