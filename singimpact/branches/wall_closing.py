@@ -36,6 +36,11 @@ class WordSettings:
     kept: int = 80
     # the same of a model without a closed form, whose flights cost more
     fewer: int = 24
+    # of every so many states of the grid the state so many impacts later is one of them too, on an orbit that attracts;
+    # those that differ by less than this are one
+    every: int = 8
+    later: int = 120
+    equal: float = 1e-6
 
 
 SETTINGS = WordSettings()
@@ -185,6 +190,11 @@ def closed_words(osc: Oscillator, closing: WallClosing, start: tuple[Array, Arra
         fast = closing.gap({}).value / span * n + float(closing.scales(np.zeros(2 * n))[n])
         speeds = 16 * fast * np.geomspace(1e-3, 1, SETTINGS.speeds)
         tau, v = (axis.ravel() for axis in np.meshgrid(phases, speeds))
+        ends = iterates(osc, tau[:: SETTINGS.every], v[:: SETTINGS.every], SETTINGS.later, False, closing.word[0])
+        landed = np.stack([ends.tau % period, ends.v])[:, (ends.status == Status.hit) & (ends.wall == closing.word[0])]
+        alike = np.round(landed / (SETTINGS.equal * np.array([[period], [fast]])))
+        landed = landed[:, np.unique(alike, axis=1, return_index=True)[1]]
+        tau, v = np.append(tau, landed[0]), np.append(v, landed[1])
     else:
         tau, v = start
     ends = iterates(osc, tau, v, n, keep=True, wall=closing.word[0])

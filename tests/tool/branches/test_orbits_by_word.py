@@ -140,6 +140,25 @@ def test_points_are_true_orbits_where_they_are_visible(osc, word, k, over):
             assert same == found.visible[i] or i in touching
 
 
+@pytest.mark.parametrize(
+    ("osc", "word"),
+    [(si.linear("2.058", "-0.114", "0.475", damping="0.156", amplitude="1.862", upper=("0.397", "0.589")), "llllu"),
+     (si.linear("2.936", "-0.582", "0.467", damping="0.121", amplitude="5.499", upper=("0.056", "0.351")), "luuuu"),
+     (si.linear("3.943", "-0.401", "0.915", damping="0.079", amplitude="5.081", upper=("0.301", "0.319")), "luuuu")],
+)  # fmt: skip
+def test_an_orbit_that_attracts_is_among_those_of_its_word(osc, word):
+    """Few states of a grid have a word with four impacts at one wall; orbits that attract are met from most."""
+    after = osc.iterate(np.linspace(0, 6, 50), 0.5, 3000)
+    found = [orbit for orbit in osc.periodic(word, 1) if orbit.stable]
+    period = 2 * np.pi / float(osc.parameters["omega"].value)
+    states = [(tau, v, wall) for orbit in found for tau, v, wall in zip(orbit.tau, orbit.v, orbit.wall, strict=True)]
+    near = [
+        min(abs((tau - t + period / 2) % period - period / 2) + abs(v - u) + (wall != w) for t, u, w in states)
+        for tau, v, wall in zip(after.tau, after.v, after.wall, strict=True)
+    ]
+    assert min(near) < 1e-8
+
+
 @pytest.mark.parametrize(("d", "A", "upper"), [(4, 2, "0.475"), (6, 4, "0.633")])
 def test_small_multipliers_keep_their_digits(d, A, upper):
     """An orbit of one impact at each wall leaves (r R)^2 exp(-d T) of an area; a determinant has lost half of it."""
