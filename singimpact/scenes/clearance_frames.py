@@ -14,7 +14,7 @@ from singimpact.algebra.rings import DOUBLES
 from singimpact.contact.points import is_polynomial
 from singimpact.contact.swans import SwanPoint, swan_points_over_clearance, swans_are_listed
 from singimpact.dynamics.invariant_arcs import grown_gamma
-from singimpact.inputs import refuse, require_one_wall
+from singimpact.inputs import refuse
 from singimpact.oscillator.model import Oscillator, require_rebound
 from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.studies import interval
@@ -34,6 +34,7 @@ class FilmSettings:
     opening : half the distance of the two tangency points at the ends of the slider, in periods: the window below is
         then less than a period. alone : the same when there is no period. aside : of the clearance, where no swan is.
         around : of the clearance, where swans are looked for if f(x, 0) is not a polynomial.
+    upwards : the largest part of the way to an upper wall that the slider takes.
     reach_tau, reach_t : of the window, in those halves; the unfolded swan reaches to 3 and 4.
     height : of the picture, in sizes of the cusp of P, (64/24) |a''| half^3.
     steps : of the slider. pixels : of a panel.
@@ -43,6 +44,7 @@ class FilmSettings:
     alone: float = 0.5
     aside: float = 0.1
     around: float = 2.0
+    upwards: float = 0.75
     reach_tau: float = 4.0
     reach_t: float = 6.0
     height: float = 1.5  # a swan that is opened wide is higher than its leading part
@@ -77,7 +79,8 @@ class ClearanceFrame:
 
     Attributes
     ----------
-    clearance : c. curves : "Z", "H", "P", "jumps" (the visible part of P), "gamma". tangencies : their times.
+    clearance : c. curves : "Z", "H", "P", "jumps" (the visible part of P), "gamma"; of a model with two walls "cut",
+        the flights that graze the upper wall, and "cut-launches", their launches. tangencies : their times.
     view : the window of this frame.
     """
 
@@ -114,14 +117,18 @@ class ClearanceFilm:
     @property
     def sentence(self) -> str:
         """A sentence on the clearances of the slider."""
+        upper = self.model.upper
+        above = (
+            "" if upper is None else f" The upper wall stays at x = {as_float(upper):.9g}; the curves are of the lower."
+        )
         if self.swan is not None:
             return (
                 f"At c_0 = {self.swan.clearance:.9g} the acceleration at the wall has a double zero at "
-                f"tau = {self.swan.tau:.9g}: a {self.swan.kind} swan. Move the slider through it."
+                f"tau = {self.swan.tau:.9g}: a {self.swan.kind} swan. Move the slider through it.{above}"
             )
         low, high = self.frames[0].clearance, self.frames[-1].clearance
         why = "" if _feels_clearance(self.model) else ": f does not contain x, and no curve depends on the clearance"
-        return f"No swan lies between c = {low:.9g} and c = {high:.9g}{why}."
+        return f"No swan lies between c = {low:.9g} and c = {high:.9g}{why}.{above}"
 
 
 def clearance_film(
@@ -147,11 +154,12 @@ def clearance_film(
     """
     if not isinstance(model, Oscillator):
         raise refuse("model", model, "an ImpactOscillator")
-    require_one_wall("explore", (model,), {})
     require_rebound(model, "the page, which draws gamma,")
     if isinstance(steps, bool) or not isinstance(steps, int) or not 2 <= steps <= 1001:
         raise refuse("steps", steps, "a whole number from 2 to 1001")
     ends = None if between is None else interval(between)
+    if ends is not None and ends[1] >= _highest(model):
+        raise refuse("between", between, f"clearances below the upper wall, which stays at x = {model.upper}")
     swan = _nearest_swan(model, ends)
     views = _across(model, ends, steps) if swan is None else _through(swan, ends, steps)
     surfaces, frames = [], []
@@ -165,6 +173,16 @@ def clearance_film(
     return ClearanceFilm(model, swan, tuple(frames), widest.tau, widest.t, widest.v, flights)
 
 
+def _highest(model: Oscillator) -> float:
+    """The place of the upper wall, inf without one."""
+    return np.inf if model.upper is None else as_float(model.upper)
+
+
+def _below_the_upper_wall(model: Oscillator, high: float, clearance: float) -> float:
+    """The upper end of the slider, or a point between a clearance and the upper wall where that is lower."""
+    return min(high, clearance + SETTINGS.upwards * (_highest(model) - clearance))
+
+
 def _feels_clearance(model: Oscillator) -> bool:
     return "x" in names_in(substitute(model.force(), {"xdot": number(0)}))
 
@@ -174,16 +192,18 @@ def _nearest_swan(model: Oscillator, between: tuple[Fraction, Fraction] | None) 
     if between is None and not is_polynomial(substitute(model.force(), {"xdot": number(0)})):  # no bound of all swans
         between = Fraction(here - SETTINGS.around), Fraction(here + SETTINGS.around)
     swans = swan_points_over_clearance(model, between) if _feels_clearance(model) and swans_are_listed(model) else ()
-    return min(swans, key=lambda swan: abs(swan.clearance - here), default=None)
+    below = [swan for swan in swans if swan.clearance < _highest(model)]
+    return min(below, key=lambda swan: abs(swan.clearance - here), default=None)
 
 
 def _across(model: Oscillator, between: tuple[Fraction, Fraction] | None, steps: int) -> list[tuple[float, View]]:
     """The clearances around the model's own, or between the ends, in the window that `classify` looks at."""
     here = as_float(model.clearance)
-    low, high = (here - SETTINGS.aside, here + SETTINGS.aside) if between is None else map(float, between)
+    high = _below_the_upper_wall(model, here + SETTINGS.aside, here)
+    low, high = (here - SETTINGS.aside, high) if between is None else map(float, between)
     tau, t = default_window(model)
-    outline = ImpactSurface(model, tau, t, 1 / SETTINGS.pixels).outline
-    heights = [float(np.abs(curve.points[:, 1]).max()) for curve in outline]
+    surface = ImpactSurface(model, tau, t, 1 / SETTINGS.pixels)
+    heights = [float(np.abs(curve.points[:, 1]).max()) for curve in (*surface.outline, *surface.discontinuities)]
     view = View(tau, t, SETTINGS.height * max(heights, default=1.0))
     places = np.linspace(low, high, steps)
     _with_own(places, here, None)
@@ -202,7 +222,7 @@ def _through(swan: SwanPoint, between: tuple[Fraction, Fraction] | None, steps: 
 
     a = a'' (sigma^2 - half^2)/2 and a = -f_x (c - c_0) at the swan, to leading order.
     """
-    curvature = abs(float(acceleration(swan.oscillator(1), np.array([swan.tau]), 2)[0]))
+    curvature = abs(float(acceleration(swan.model.replace(clearance=swan.place), np.array([swan.tau]), 2)[0]))
     slope = abs(_stiffness(swan))
     period = swan.model.period
     widest = SETTINGS.alone if period is None else SETTINGS.opening * as_float(period)
@@ -211,6 +231,7 @@ def _through(swan: SwanPoint, between: tuple[Fraction, Fraction] | None, steps: 
         here = as_float(swan.model.clearance)
         low, high = swan.clearance - away, swan.clearance + away
         low, high = here - away / 2 if here < low else low, here + away / 2 if here > high else high
+        high = _below_the_upper_wall(swan.model, high, max(here, swan.clearance))
     else:
         low, high = map(float, between)
         away = max(swan.clearance - low, high - swan.clearance)
@@ -238,6 +259,10 @@ def _stiffness(swan: SwanPoint) -> float:
 
 def _frame(surface: ImpactSurface, clearance: float, view: View) -> ClearanceFrame:
     curves = {"Z": surface.zero_set, "H": surface.horizon, "P": surface.outline, "jumps": surface.discontinuities}
+    if surface.model.upper is not None:
+        curves["cut"] = surface.cut
+        curves["cut-launches"] = [curve for curve in curves["jumps"] if curve.name == "cut"]
+        curves["jumps"] = [curve for curve in curves["jumps"] if curve.name != "cut"]
     times = tuple(tau for _, tau in surface.placed_tangencies)
     return ClearanceFrame(clearance, {**curves, "gamma": _gammas(surface, view.size)}, times, view)
 

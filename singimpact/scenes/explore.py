@@ -8,9 +8,11 @@ ones too.
 
 import inspect
 import json
+from collections.abc import Iterable
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -23,9 +25,10 @@ from singimpact.codegen.javascript import formula, translated
 from singimpact.codegen.scalar import scalar
 from singimpact.flights.horizons import horizon_of, reach_of
 from singimpact.flights.kernels import roots, steps, taylor
+from singimpact.flights.kernels.state import ACROSS
 from singimpact.flights.limits import LIMITS, degree_for
 from singimpact.flights.model_numbers import numbers_of_flow, recurrence_of
-from singimpact.inputs import checked_keywords, refuse, whole
+from singimpact.inputs import checked_keywords, refuse, takes_two_walls, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.rebound import rho_of
 from singimpact.progress import ProgressLine
@@ -42,6 +45,16 @@ CURVES = {
     "": ("orbit", "impacts of the orbit"),
 }
 """Curves of a frame, with the pen of each and its words in the legend."""
+AT_TWO_WALLS = {
+    "": ("orbit", "impacts of the orbit at the lower wall"),
+    "upper": ("orbit", "impacts of the orbit at the upper wall"),
+    "cut": ("cut", "cut: the flight grazes the upper wall"),
+}
+"""What the legend has of a model with two walls, in place of its words or beside them."""
+BOTH_WALLS = (
+    " Every step is searched for both walls, and the nearer root is the impact; from the upper wall the model with "
+    "x -> -x is flown. Velocities are those away from the wall."
+)
 GROUND = {"ink": BLACK, "grid": SHADE, "axis": GREY, "wall": WALL, "ground": WHITE}  # behind the curves and beside them
 PARTS_OF_A_WINDOW = 40_000  # in which the page has coordinates: below a hundredth of a pixel
 PARTS = Path(__file__).with_name("page")
@@ -80,14 +93,18 @@ class ExplorePage:
 
 
 @checked_keywords
+@takes_two_walls
 def explore(osc: Oscillator, between: Any = None, points: int = SETTINGS.steps) -> ExplorePage:
     """A page on which Z, H, P and gamma change as the clearance moves through the nearest swan.
 
     It has sliders for the restitution and the parameters too. A click in the plane of states starts an orbit.
+    Orbits of a model with two walls bounce between them; the curves are those of the lower wall, which the slider
+    moves. `explore(osc.mirrored)` shows those of the upper one.
 
     Parameters
     ----------
-    osc : the model. between : two clearances, the ends of the slider; both sides of the swan without them.
+    osc : the model. between : two clearances, the ends of the slider, below an upper wall; both sides of the swan
+        without them.
     points : clearances of the slider, from 2 to 1001.
 
     Returns
@@ -115,15 +132,18 @@ def explore(osc: Oscillator, between: Any = None, points: int = SETTINGS.steps) 
 def explore_page(film: ClearanceFilm) -> str:
     """The page of a film."""
     model = film.model
-    text = f"x'' + f(x, x') = g(t), x \u2265 c, with f = {model.f}, g = {model.g}, restitution {model.restitution}."
+    places = "x \u2265 c" if model.upper is None else f"c \u2264 x \u2264 {model.upper}"
+    text = f"x'' + f(x, x') = g(t), {places}, with f = {model.f}, g = {model.g}, restitution {model.restitution}."
+    if model.upper is not None:
+        text += f" At the upper wall the restitution is {model.upper_restitution}."
     if model.parameters:
         text += f" Parameters: {', '.join(f'{name} = {value}' for name, value in model.parameters.items())}."
     page = (PARTS / "page.html").read_text(encoding="utf-8")
     filled = {
-        "title": escape(f"x'' + {model.f} = {model.g}, x \u2265 c"),
+        "title": escape(f"x'' + {model.f} = {model.g}, {places}"),
         "model": escape(text),
         "sentence": escape(film.sentence.replace("c_0", "c\u2080").replace("tau =", "\u03c4 =")),
-        "method": escape(METHOD),
+        "method": escape(METHOD if model.upper is None else METHOD + BOTH_WALLS),
         "style": (PARTS / "page.css").read_text(encoding="utf-8"),
         "accent": BLUE,
         "night": on_dark(WHITE),
@@ -137,11 +157,12 @@ def explore_page(film: ClearanceFilm) -> str:
 def _script(film: ClearanceFilm) -> str:
     """The model, the film, how curves look, and the code of the page."""
     parts = [model_in_javascript(film.model), as_script("FILM", _film(film))]
-    parts.append(as_script("PENS", {name: _pen(PENS[name]) for name, _ in CURVES.values()}))
+    curves = CURVES if film.model.upper is None else CURVES | AT_TWO_WALLS
+    parts.append(as_script("PENS", {name: _pen(PENS[name]) for name, _ in curves.values()}))
     parts.append(as_script("GROUNDS", {"day": GROUND, "night": {name: on_dark(GROUND[name]) for name in GROUND}}))
     legend = [
-        {"name": pen, "label": label, "dot": PENS[pen].color if pen == "orbit" else None}
-        for pen, label in CURVES.values()
+        {"name": pen, "label": label, "dot": PENS[pen].color if pen == "orbit" else None, "open": name == "upper"}
+        for name, (pen, label) in curves.items()
     ]
     legend.append({"name": "P", "label": "tangency points", "dot": "currentColor"})
     parts.append(as_script("LEGEND", legend))
@@ -165,9 +186,17 @@ def _film(film: ClearanceFilm) -> dict[str, Any]:
 
 
 def _frame(frame: ClearanceFrame) -> dict[str, Any]:
-    heights = {"Z": frame.view.t, "H": frame.view.t}
+    heights = dict.fromkeys(("Z", "H", "cut"), frame.view.t)
     curves = {
-        CURVES[name][0]: [_steps(curve.points, frame.view.tau, heights.get(name, frame.view.v)) for curve in parts]
+        CURVES.get(name, (name,))[0]: [
+            # chords of the cut are half as long as those of the others
+            _steps(
+                curve.points if name in CURVES else _halved(curve.points),
+                frame.view.tau,
+                heights.get(name, frame.view.v),
+            )
+            for curve in parts
+        ]
         for name, parts in frame.curves.items()
     }
     none = [CURVES[name][0] for name in ("Z", "H", "P") if not frame.curves[name]]
@@ -183,6 +212,11 @@ def _frame(frame: ClearanceFrame) -> dict[str, Any]:
     }
 
 
+def _halved(points: Array) -> Array:
+    """Every second point, and the last."""
+    return np.vstack([points[:-1:2], points[-1:]])
+
+
 def _steps(points: Array, tau: tuple[float, float], up: tuple[float, float]) -> list[int]:
     """Steps from each point to the next, the first from the lower ends, in parts of the window: few digits each."""
     low, high = np.array([tau, up]).T
@@ -193,7 +227,7 @@ def _steps(points: Array, tau: tuple[float, float], up: tuple[float, float]) -> 
 
 # A model as JavaScript: the kernels that fly it in a browser, its recurrence, and its numbers.
 
-KERNELS = (radii, roots, steps, taylor)
+KERNELS = (roots, steps, taylor)
 BOUND = {
     "step_size": "step_size_of_discs",
     "singular_part": "singular_part_of_discs",
@@ -202,12 +236,16 @@ BOUND = {
 }
 """What `flights.bind` puts in the places of functions of linear models."""
 GIVEN = "given"
-USED = ("coefficients", "taylor_flight", "follow", "rebound", "constants_of", "law_of")
-"""The entry points that the page calls."""
+EMITTED = ("coefficients", "disc")
+"""The recurrence of f and g."""
+USED = ("coefficients", "rebound", "constants_of", "law_of", "MODEL")
+"""What the page calls and reads of one wall, beside `taylor_flight` and `follow`."""
 
 
 def model_in_javascript(osc: Oscillator) -> str:
-    """The kernels, the recurrence of f and g, the rebound law and `MODEL`, the numbers, as one text.
+    """The text of `SIDES`, what flies from each wall, and of `MODEL`, the numbers of the first.
+
+    From the upper wall the model with x -> -x is flown, whose lower wall that is.
 
     Examples
     --------
@@ -215,11 +253,31 @@ def model_in_javascript(osc: Oscillator) -> str:
     >>> [line for line in text.splitlines() if line.startswith("const constants_of")]
     ['const constants_of = (given) => [given["w"], (-1 * given["w"]), 1];']
     """
+    kernels = [text for module in KERNELS for text in _functions(module)]
+    sides = [osc] if osc.upper is None else [osc, osc.mirrored]
+    # kernels in a scope of their own: the page has functions of the same names
+    return "\n".join(
+        [
+            as_script("ACROSS", ACROSS),
+            *_functions(radii),
+            f"const flights_with = ({', '.join(EMITTED)}) => {{",
+            *kernels,
+            *(f"const {name} = {other};" for name, other in BOUND.items()),
+            "return { taylor_flight, follow };",
+            "};",
+            f"const SIDES = [{', '.join(map(_side, sides))}];",
+            "const { MODEL } = SIDES[0];",
+        ]
+    )
+
+
+def _functions(module: ModuleType) -> Iterable[str]:
+    return translated(inspect.getsource(module)).values()
+
+
+def _side(osc: Oscillator) -> str:
+    """The recurrence of f and g, the rebound law and the numbers of a model with its flights, as one expression."""
     flow = recurrence_of(osc)
-    functions: dict[str, str] = {}
-    for module in KERNELS:
-        functions |= translated(inspect.getsource(module))
-    functions |= translated(flow.source, ("coefficients", "disc"))
     text, law = _rebound(osc)
     values = {name: as_float(value) for name, value in osc.parameters.items()}
     model = {
@@ -233,21 +291,20 @@ def model_in_javascript(osc: Oscillator) -> str:
         "reach": reach_of(osc),
         "period": None if osc.period is None else as_float(osc.period),
         "clearance": as_float(osc.clearance),
+        "upper": None if osc.upper is None else as_float(osc.upper),
         "r": as_float(osc.slope_at_rest()),
         "r_moves": not names_in(osc.restitution),
     }
-    # in a scope of their own: the page has functions of the same names
     return "\n".join(
         [
-            f"const {{ {', '.join(USED)} }} = (() => {{",
-            *functions.values(),
+            "(() => {",
+            *translated(flow.source, EMITTED).values(),
             text,
-            *(f"const {name} = {other};" for name, other in BOUND.items()),
             f"const constants_of = ({GIVEN}) => [{_formulas(flow.constants)}];",
             law,
-            f"return {{ {', '.join(USED)} }};",
-            "})();",
             as_script("MODEL", model),
+            f"return {{ ...flights_with({', '.join(EMITTED)}), {', '.join(USED)} }};",
+            "})()",
         ]
     )
 

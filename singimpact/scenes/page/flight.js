@@ -1,5 +1,6 @@
 // Orbits in doubles. The functions called here, taylor_flight and follow, are the package's own kernels in JavaScript,
-// over the recurrence that was emitted for this f and g.
+// over the recurrence that was emitted for this f and g. An entry of SIDES flies from one wall: from the upper one the
+// model with x -> -x, whose lower wall that is.
 
 const EPSILON = Math.pow(2, -52);
 // A chatter is summed to leading order when what is left of it is below this part of the forcing's time scale: the next
@@ -13,33 +14,43 @@ const REST = 50;  // the ending of an orbit that stays at rest
 const WORDS = {
   0: "all impacts asked for were flown", 3: "no impact follows before the horizon",
   5: "the next flight touches x = c so nearly that doubles do not decide whether it is an impact",
+  [ACROSS + 5]: "the next flight touches the upper wall so nearly that doubles do not decide whether it is an impact",
   21: "the next flight takes too many steps", 22: "the next flight ends at a singularity of f or g",
   23: "the motion leaves the range of numbers", [REST]: "the mass rests on the obstacle and does not lift off",
 };
 
-function flyer(clearance, restitution, given, period) {
+// What flies from the lower wall; `across` has what flies from the upper one, if there is one.
+function flyer(clearance, restitution, given, period, upper_restitution) {
+  const { upper } = MODEL, gap = upper === null ? Infinity : upper - clearance;
+  const fly = side(0, clearance, gap, restitution, given, period);
+  if (upper !== null) {
+    fly.across = side(1, -upper, gap, upper_restitution ?? SIDES[1].MODEL.r, given, period);
+    fly.across.across = fly;
+  }
+  return fly;
+}
+
+function side(wall, clearance, gap, restitution, given, period) {
+  const kernels = SIDES[wall], { numbers, rows, order, safety, horizon, reach, budget } = kernels.MODEL;
   const own = Object.keys(MODEL.parameters).every((name) => given[name] === MODEL.parameters[name]);
-  const p = own ? MODEL.numbers.slice() : [0, ...constants_of(given)];
+  const p = own ? numbers.slice() : [0, ...kernels.constants_of(given)];
   p[0] = clearance;
-  const room = MODEL.order + 16;
-  const row = () => new Float64Array(room);
-  const work = { X: row(), W: Array.from({ length: MODEL.rows }, row), q: row() };
-  const rules = {
-    order: MODEL.order, ulp: MODEL.safety * EPSILON, horizon: MODEL.horizon, reach: MODEL.reach, budget: MODEL.budget,
-  };
-  const law = law_of(given, restitution);
-  return { p, work, rules, w: law.w, r: law.r, period };
+  const row = () => new Float64Array(order + 16);
+  const work = { X: row(), W: Array.from({ length: rows }, row), q: row() };
+  const rules = { order, ulp: safety * EPSILON, horizon, reach, budget, gap };
+  const law = kernels.law_of(given, restitution);
+  return { ...kernels, wall, gap, p, work, rules, w: law.w, r: law.r, period };
 }
 
 function wall_acceleration(fly, tau) {
-  coefficients([tau], 0, 0, 0, 0, 2, fly.p, fly.work);
+  fly.coefficients([tau], 0, 0, 0, 0, 2, fly.p, fly.work);
   return 2 * fly.work.X[2];
 }
 
 // [code, flight time, x' at the hit] of the launch from x = c; v = 0 lifts off from rest, where a_c = 0 and rises.
 function launched(fly, tau, v, lifts) {
   const removed = v > 0 ? 1 : lifts ? 3 : 2;
-  const found = taylor_flight([tau], v, removed, lifts ? 0 : NaN, fly.p, fly.rules, fly.work, []);
+  const found = fly.taylor_flight([tau], v, removed, lifts ? 0 : NaN, fly.p, fly.rules, fly.work, []);
   return [found[0], found[1], found[2]];
 }
 
@@ -59,11 +70,13 @@ function lift_off(fly, tau) {
   return Infinity;
 }
 
-// The events of an orbit: times and velocities after them, kinds as `Orbit.kind`, x' before each impact, an ending.
-function flown(fly, tau, v, most) {
-  const orbit = { tau: [tau], v: [v], kind: ["start"], before: [NaN], ending: 0 };
+// The events of an orbit: times, velocities away from the wall after them, walls (0, or 1 for the upper one), kinds as
+// `Orbit.kind`, x' before each impact in the direction away from its wall, an ending.
+function flown(start, tau, v, most) {
+  let fly = start;
+  const orbit = { tau: [tau], v: [v], wall: [fly.wall], kind: ["start"], before: [NaN], ending: 0 };
   const add = (time, speed, kind, hit) => {
-    orbit.tau.push(time); orbit.v.push(speed); orbit.kind.push(kind); orbit.before.push(hit);
+    orbit.tau.push(time); orbit.v.push(speed); orbit.wall.push(fly.wall); orbit.kind.push(kind); orbit.before.push(hit);
   };
   const rate = fly.period ? 2 * Math.PI / fly.period : 1;
   let since = 0, lost = 0, lifts = false;  // the sum of flight times, and what it has lost
@@ -86,13 +99,14 @@ function flown(fly, tau, v, most) {
       continue;
     }
     const [code, time, hit] = launched(fly, now, v, lifts);
-    if (code !== 0) {
-      orbit.ending = code;
+    if (code >= ACROSS) fly = fly.across;
+    if (code % ACROSS !== 0) {
+      orbit.ending = code % ACROSS === 5 && fly.wall ? ACROSS + 5 : code % ACROSS;
       return orbit;
     }
     const part = time - lost, total = since + part;
     lost = (total - since) - part; since = total;
-    v = rebound(hit, fly.w); lifts = false;
+    v = fly.rebound(hit, fly.w); lifts = false;
     add(tau + (since - lost), v, "impact", hit);
   }
   return orbit;
@@ -102,33 +116,40 @@ function flown(fly, tau, v, most) {
 function followed(fly, tau, v, times) {
   const out = times.map(() => [NaN, NaN]);
   fly.work.q[0] = 0;
-  follow([tau], v, times, fly.p, fly.rules, fly.work, out);
+  fly.follow([tau], v, times, fly.p, fly.rules, fly.work, out);
   return out;
 }
 
-// x - c of an orbit up to a time: [t, x - c] of points, a dozen and more a flight.
+// x - c of an orbit up to a time: [t, x - c] of points, a dozen and more a flight; `fly` is that of the lower wall.
 function motion(fly, orbit, until) {
   const points = [];
   for (let n = 0; n < orbit.tau.length && orbit.tau[n] < until; n += 1) {
     const start = orbit.tau[n], rests = orbit.kind[n] === "complete" || (orbit.kind[n] === "start" && orbit.kind[n + 1] === "release");
-    points.push([start, 0]);
+    const from = orbit.wall[n] ? fly.across : fly, height = (z) => orbit.wall[n] ? fly.gap - z : z;
+    points.push([start, height(0)]);
     if (rests || orbit.kind[n + 1] === "complete") continue;
-    const last = n + 1 < orbit.tau.length ? orbit.tau[n + 1] : orbit.ending === 3 || orbit.ending === 5 ? until : start;
+    const last = n + 1 < orbit.tau.length ? orbit.tau[n + 1] : orbit.ending === 3 || orbit.ending % ACROSS === 5 ? until : start;
     const count = Math.min(200, 12 + Math.ceil(24 * (last - start) / (fly.period || 1)));
     const times = Array.from({ length: count - 1 }, (_, k) => (k + 1) * (last - start) / count);
-    followed(fly, start, orbit.v[n], times).forEach((each, k) => points.push([start + times[k], each[0]]));
+    followed(from, start, orbit.v[n], times).forEach((each, k) => points.push([start + times[k], height(each[0])]));
   }
   return points;
 }
 
-// Z, H and P as lines [x, y, x, y, ...], from the signs of y = (x - c)/t^2 of flights at rest on a grid.
+// Z, H and P as lines [x, y, x, y, ...], from the signs of y = (x - c)/t^2 of flights at rest on a grid. A flight that
+// is seen above the upper wall at a time of the grid is left out from there on.
 function sketched(fly, window, across, up) {
   const [t0, t1] = window.t, taus = [], times = [];
   for (let i = 0; i <= across; i += 1) taus.push(window.tau[0] + (window.tau[1] - window.tau[0]) * i / across);
   for (let j = 0; j <= up; j += 1) times.push(t0 + (t1 - t0) * (j + 0.37) / (up + 1));  // 0 is never among them
   const back = times.filter((t) => t < 0).reverse(), ahead = times.filter((t) => t > 0);
+  const below = (flights) => {
+    const met = flights.findIndex(([z]) => z > fly.gap);
+    // a crossing may lie just before that time, here or in the next column
+    return flights.map((each, k) => met >= 0 && k > met + 1 ? [NaN, NaN] : each);
+  };
   const columns = taus.map((tau) => {
-    const flights = [...followed(fly, tau, 0, back).reverse(), ...followed(fly, tau, 0, ahead)];
+    const flights = [...below(followed(fly, tau, 0, back)).reverse(), ...below(followed(fly, tau, 0, ahead))];
     return flights.map(([z, u], j) => [tau, times[j], z / (times[j] * times[j]), u]);
   });
   // the crossing of an edge, and its name: neighbouring cells share it

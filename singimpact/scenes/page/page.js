@@ -4,7 +4,8 @@
 const SVG = "http://www.w3.org/2000/svg";
 const at = (id) => document.getElementById(id);
 let turn_now = MODEL.period;  // the period at the sliders' parameters, null where it is not known
-const state = { frame: FILM.start, r: MODEL.r, given: { ...MODEL.parameters }, start: null, orbit: null };
+const UPPER = SIDES.length > 1 ? SIDES[1].MODEL : null;  // numbers of the upper wall, if there is one
+const state = { frame: FILM.start, r: MODEL.r, r_upper: UPPER && UPPER.r, given: { ...MODEL.parameters }, start: null, wall: 0, orbit: null };
 const NIGHT = matchMedia("(prefers-color-scheme: dark)");
 const colours = () => GROUNDS[NIGHT.matches ? "night" : "day"];
 const short = (value, digits = 6) => String(Number(value.toPrecision(digits)));
@@ -86,7 +87,7 @@ function dots(here, places, kind, attributes) {
 
 const moved = () => Object.keys(MODEL.parameters).filter((name) => state.given[name] !== MODEL.parameters[name]);
 const frame = () => FILM.frames[state.frame];
-const fly = () => flyer(frame().c, state.r, state.given, turn_now);
+const fly = () => flyer(frame().c, state.r, state.given, turn_now, state.r_upper);
 
 // The period at the sliders' parameters: one of p, p old/new and p new/old for each, if g repeats after it.
 function period() {
@@ -113,7 +114,7 @@ function window_now() {
 
 // A curve of this place as [x, y, x, y, ...]: the page has the steps between its points, in parts of the window.
 function stored(name) {
-  const own = frame(), ends = [own.tau, name === "Z" || name === "H" ? own.t : own.v];
+  const own = frame(), ends = [own.tau, ["Z", "H", "cut"].includes(name) ? own.t : own.v];
   return own.curves[name].map((steps) => {
     const place = [0, 0];
     return steps.map((step, n) => {
@@ -136,6 +137,10 @@ function show() {
   const curve = (name) => fresh ? (fresh[name] || []) : stored(name);
   for (const name of ["Z", "H"]) draw(surface, name, curve(name));
   for (const name of ["P", "jump"]) draw(states, name, curve(name));
+  if (UPPER && !fresh) {
+    draw(surface, "cut", curve("cut"));
+    draw(states, "cut", curve("cut-launches"));
+  }
   draw(states, "gamma", state.r === MODEL.r ? curve("gamma") : []);
   const points = fresh ? [] : own.tangencies.map((tau) => [tau, 0, 4.5]);
   for (const here of [surface, states]) dots(here, points, "tangencies", { fill: colours().ink });
@@ -150,7 +155,7 @@ function show() {
 function note(changed) {
   if (changed.length) {
     const own = changed.map((name) => `${name} = ${short(MODEL.parameters[name])}`).join(", ");
-    return `Z, H and P are sketched here for these parameters, to about one cell of a grid of 160 by 160. γ, the visible part of P${FILM.swan === null ? "" : ", c₀"} and the tangency points are those of ${own}; they are drawn there only.`;
+    return `Z, H and P are sketched here for these parameters, to about one cell of a grid of 160 by 160. γ, ${UPPER ? "the cut, " : ""}the visible part of P${FILM.swan === null ? "" : ", c₀"} and the tangency points are those of ${own}; they are drawn there only.`;
   }
   if (state.r !== MODEL.r) return `γ depends on r and is drawn at r = ${short(MODEL.r)} only; Z, H and P do not depend on r.`;
   return frame().empty;
@@ -158,8 +163,9 @@ function note(changed) {
 
 // ---- the orbit
 
-function start_orbit(tau, v) {
-  state.start = [tau, v];
+function start_orbit(tau, v, wall = state.wall) {
+  state.start = [tau, v]; state.wall = wall;
+  if (UPPER) at("wall").value = wall;
   at("start-tau").value = tau; at("start-v").value = v;
   fly_now();
   show();
@@ -169,7 +175,7 @@ function fly_now() {
   if (!state.start) return;
   const most = Math.min(5000, Math.max(1, Number(at("impacts").value) || 200));
   turn_now = period();
-  state.orbit = flown(fly(), state.start[0], state.start[1], most);
+  state.orbit = flown(state.wall ? fly().across : fly(), state.start[0], state.start[1], most);
 }
 
 function show_orbit(states, view) {
@@ -183,29 +189,32 @@ function show_orbit(states, view) {
     film = null;
     return;
   }
-  const turn = turn_now, places = [];
+  const turn = turn_now, sides = [[], []];
   orbit.tau.forEach((tau, n) => {
+    const places = sides[orbit.wall[n]];
     if (!turn) places.push([tau, orbit.v[n], 2.6]);
     else {
       for (let m = Math.ceil((view.tau[0] - tau) / turn); tau + m * turn <= view.tau[1]; m += 1) places.push([tau + m * turn, orbit.v[n], 2.6]);
     }
   });
-  dots(states, places, "orbit", { fill: PENS.orbit.color, stroke: colours().ink, "stroke-width": 0.7 });
+  const looks = [{ fill: PENS.orbit.color, stroke: colours().ink, "stroke-width": 0.7 }, open_dot()];
+  sides.forEach((places, wall) => { if (!wall || UPPER) dots(states, places, wall ? "orbit-upper" : "orbit", looks[wall]); });
   dots(states, [[state.start[0], state.start[1], 6]], "start", { fill: "none", stroke: colours().ink, "stroke-width": 1.8 });
   const start = orbit.tau[0], span = turn ? 8 * turn : 50;
   const impacts = orbit.kind.filter((kind) => kind === "impact").length;
   const ends = orbit.tau[orbit.tau.length - 1] + (orbit.ending ? 0.5 * (turn || 1) : 0);
   const until = Math.min(start + span, Math.max(ends, start + 1e-6 * span));
-  const points = motion(fly(), orbit, until);
-  const rise = points.reduce((a, each) => Number.isFinite(each[1]) ? Math.max(a, each[1]) : a, 0) || 1;
+  const flying = fly(), points = motion(flying, orbit, until);
+  const rise = UPPER ? flying.gap : points.reduce((a, each) => Number.isFinite(each[1]) ? Math.max(a, each[1]) : a, 0) || 1;
   const here = panel("motion", [start, until], [-0.08 * rise, 1.06 * rise], { x: "time t", y: "x − c", title: "x - c over time" }, (wide) => wide < 600 ? 0.62 : 0.26);
-  here.inside.append(made("line", { x1: here.box.left, x2: here.box.right, y1: here.y(0), y2: here.y(0), stroke: colours().ink, "stroke-width": 1.6 }));
+  for (const wall of UPPER ? [0, rise] : [0]) here.inside.append(made("line", { x1: here.box.left, x2: here.box.right, y1: here.y(wall), y2: here.y(wall), stroke: colours().ink, "stroke-width": 1.6, "data-wall": wall }));
   const path = points.filter((each) => Number.isFinite(each[1])).flat();
   here.inside.append(made("path", { d: path.reduce((text, value, n) => n % 2 ? text + here.y(value).toFixed(2) : `${text}${n ? "L" : "M"}${here.x(value).toFixed(2)} `, ""), "data-curve": "motion", ...stroke({ ...PENS.orbit, dashes: "none" }) }));
-  film = { here, points: points.filter((each) => Number.isFinite(each[1])), start, until, turn: turn || span / 8 };
-  dots(here, orbit.tau.flatMap((tau, n) => tau <= until && n ? [[tau, 0, 2.4]] : []), "impacts", { fill: PENS.orbit.color, stroke: colours().ink, "stroke-width": 0.7 });
+  film = { here, above: UPPER ? rise : null, points: points.filter((each) => Number.isFinite(each[1])), start, until, turn: turn || span / 8 };
+  for (const wall of UPPER ? [0, 1] : [0]) dots(here, orbit.tau.flatMap((tau, n) => tau <= until && n && orbit.wall[n] === wall ? [[tau, wall && rise, 2.4]] : []), wall ? "impacts-upper" : "impacts", looks[wall]);
   const several = (n, one, more) => `${n} ${n === 1 ? one : more}`;
-  const told = [`${several(impacts, "impact", "impacts")} until t = ${short(orbit.tau[orbit.tau.length - 1])}; ${WORDS[orbit.ending] || `flight ended with code ${orbit.ending}`}.`];
+  const across = orbit.kind.filter((kind, n) => kind === "impact" && orbit.wall[n]).length;
+  const told = [`${several(impacts, "impact", "impacts")}${UPPER ? `, ${across} of them at the upper wall,` : ""} until t = ${short(orbit.tau[orbit.tau.length - 1])}; ${WORDS[orbit.ending] || `flight ended with code ${orbit.ending}`}.`];
   const count = (kind) => orbit.kind.filter((each) => each === kind).length;
   if (count("complete")) told.push(`${several(count("complete"), "chatter", "chatters")} came to rest.`);
   if (count("release")) told.push(`${several(count("release"), "lift-off", "lift-offs")} from rest.`);
@@ -243,9 +252,16 @@ function show_mass() {
   svg.replaceChildren(
     made("rect", { x: 4, y: wall, width: 62, height: Math.max(0, here.box.bottom - wall), fill: colours().grid }),
     made("line", { x1: 4, x2: 66, y1: wall, y2: wall, stroke: colours().ink, "stroke-width": 1.6 }),
+    ...(film.above === null ? [] : upper_wall(here.y(film.above) - 24)),
     made("rect", { x: 23, y: here.y(x) - 24, width: 24, height: 24, rx: 3, fill: PENS.orbit.color, "data-height": x, "data-time": clock.now }));
   here.inside.querySelectorAll("[data-now]").forEach((each) => each.remove());
   here.inside.append(made("circle", { cx: here.x(clock.now), cy: here.y(x), r: 5, fill: colours().ink, "data-now": "" }));
+}
+
+// The upper wall beside the motion, where the mass meets it with its upper edge.
+function upper_wall(y) {
+  return [made("rect", { x: 4, y: 0, width: 62, height: Math.max(0, y), fill: colours().grid }),
+    made("line", { x1: 4, x2: 66, y1: y, y2: y, stroke: colours().ink, "stroke-width": 1.6 })];
 }
 
 function tick(now) {
@@ -276,7 +292,7 @@ function save(name, type, text) {
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
 
-const csv = () => ["tau,v,kind", ...state.orbit.tau.map((tau, n) => `${tau},${state.orbit.v[n]},${state.orbit.kind[n]}`)].join("\n") + "\n";
+const csv = () => [`tau,v,kind${UPPER ? ",wall" : ""}`, ...state.orbit.tau.map((tau, n) => `${tau},${state.orbit.v[n]},${state.orbit.kind[n]}${UPPER ? `,${state.orbit.wall[n]}` : ""}`)].join("\n") + "\n";
 
 // The panels below one another, as one file.
 function picture() {
@@ -291,7 +307,9 @@ function picture() {
 
 function address() {
   const kept = { c: frame().c, r: state.r, ...Object.fromEntries(Object.keys(MODEL.parameters).map((name) => [`p.${name}`, state.given[name]])) };
+  if (UPPER) kept.r_upper = state.r_upper;
   if (state.start) [kept.tau, kept.v] = state.start;
+  if (state.wall) kept.wall = state.wall;
   return `#${new URLSearchParams(kept)}`;
 }
 
@@ -301,7 +319,7 @@ function recall() {
   if (value("c") !== null) to_frame(FILM.frames.reduce((best, each, n) => Math.abs(each.c - value("c")) < Math.abs(FILM.frames[best].c - value("c")) ? n : best, 0));
   for (const name in setters) if (value(name) !== null) setters[name](value(name));
   const own = frame(), middle = (own.tau[0] + own.tau[1]) / 2;
-  start_orbit(value("tau") ?? Number(middle.toPrecision(6)), value("v") ?? Number((0.4 * own.v[1]).toPrecision(4)));
+  start_orbit(value("tau") ?? Number(middle.toPrecision(6)), value("v") ?? Number((0.4 * own.v[1]).toPrecision(4)), UPPER && value("wall") === 1 ? 1 : 0);
   if (MODEL.period && Math.max(...state.orbit.v.map(Math.abs)) > own.v[1]) {  // the impacts lie above the window
     at("axes").value = "period";
     show();
@@ -332,17 +350,20 @@ function slider(id, label, low, high, value, changed) {
   });
   put(value);
   document.querySelector(".controls").append(box);
-  setters[label === "restitution r" ? "r" : `p.${label}`] = (now) => { put(now); changed(now); };
+  setters[{ restitution: "r", "restitution-upper": "r_upper" }[id] || `p.${label}`] = (now) => { put(now); changed(now); };
   return () => { put(value); changed(value); };
 }
 
 const PAGE_NOW = {}, back = [];
 
+// An impact at the upper wall.
+const open_dot = () => ({ fill: colours().ground, stroke: PENS.orbit.color, "stroke-width": 1.5 });
+
 function legend() {
   at("legend").replaceChildren(...LEGEND.map((line) => {
     const item = document.createElement("li"), svg = made("svg", { width: 34, height: 10 });
     svg.append(made("line", { x1: 1, x2: 33, y1: 5, y2: 5, ...stroke(PENS[line.name]) }));
-    if (line.dot) svg.replaceChildren(made("circle", { cx: 17, cy: 5, r: 4, fill: line.dot }));
+    if (line.dot) svg.replaceChildren(made("circle", { cx: 17, cy: 5, r: 4, ...(line.open ? open_dot() : { fill: line.dot }) }));
     item.append(svg, line.label);
     return item;
   }));
@@ -369,11 +390,12 @@ function begin() {
     at("places").append(span);
   };
   const beside = FILM.own !== null && FILM.own / last < 0.12, before = FILM.own !== null && FILM.own / last > 0.88;
-  mark(0, beside ? "" : short(FILM.frames[0].c, 4), "first");
+  mark(0, beside || FILM.swan === 0 ? "" : short(FILM.frames[0].c, 4), "first");
   if (FILM.swan !== null) mark(FILM.swan, `c₀ = ${short(FILM.frames[FILM.swan].c, 5)}`, FILM.swan === 0 ? "swan first" : FILM.swan === last ? "swan last" : "swan");
-  mark(last, before ? "" : short(FILM.frames[last].c, 4), "last");
+  mark(last, before || FILM.swan === last ? "" : short(FILM.frames[last].c, 4), "last");
   if (FILM.own !== null && FILM.own !== 0 && FILM.own !== last) mark(FILM.own, "model", "own");
   if (MODEL.r_moves) back.push(slider("restitution", "restitution r", 0.01, 1, MODEL.r, (now) => { state.r = now; }));
+  if (UPPER && UPPER.r_moves) back.push(slider("restitution-upper", "restitution at the upper wall", 0.01, 1, UPPER.r, (now) => { state.r_upper = now; }));
   Object.keys(MODEL.parameters).forEach((name, n) => {
     const value = MODEL.parameters[name], away = value === 0 ? 1 : 0.5 * Math.abs(value);
     back.push(slider(`parameter-${n}`, name, value - away, value + away, value, (now) => { state.given[name] = now; }));
@@ -385,6 +407,8 @@ function begin() {
     const [tau, v] = [at("start-tau"), at("start-v")].map((each) => each.value === "" ? NaN : Number(each.value));
     if (Number.isFinite(tau) && v >= 0) start_orbit(tau, v);
   };
+  if (UPPER) at("wall").addEventListener("change", () => { state.wall = Number(at("wall").value); typed(); });
+  else at("choice").remove();
   for (const id of ["start-tau", "start-v", "impacts"]) at(id).addEventListener("change", typed);
   at("forget").addEventListener("click", () => { state.start = state.orbit = null; show(); });
   at("states").addEventListener("click", (event) => {

@@ -23,6 +23,12 @@ def test_curves_as_json(singimpact):
     assert set(told["frames"][0]["curves"]) == {"Z", "H", "P", "jumps", "gamma"}
 
 
+def test_two_walls(singimpact):
+    told = json.loads(singimpact("explore", *LINEAR, "--upper", "1.2", "--json").output)
+    assert set(told["frames"][0]["curves"]) == {"Z", "H", "P", "jumps", "gamma", "cut", "cut-launches"}
+    assert "The upper wall stays at x = 1.2" in told["text"]
+
+
 def test_a_range_without_a_swan_says_so(singimpact):
     told = json.loads(singimpact("explore", *LINEAR, "--json", "--between", "2", "3").output)
     assert (told["swan"], told["text"]) == (None, "No swan lies between c = 2 and c = 3.")

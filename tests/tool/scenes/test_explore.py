@@ -12,12 +12,23 @@ from singimpact.flights.kernels import roots
 from singimpact.inputs import InputError
 from singimpact.scenes import CURVES, PENS, clearance_film, explore_page, on_dark
 
+SLOW = pytest.mark.slow
 NEGATIVE = si.linear(2, "0.9", "0.5")
 DUFFING = si.ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "cos(omega*t)", "0.7", "0.6", {"omega": "1.7"})
 PARAMETRIC = si.ImpactOscillator("(1 + 0.3*cos(2*t))*x + 0.1*xdot + 0.2*x**3", "cos(t)", "0.15", "0.7")
 BENT = si.ImpactOscillator(
     "tanh(x) + 0.2*xdot + k*x/(1 + x**2)", "exp(sin(2*t)) - 1", "0.2", "-0.8*v + b*v**2", {"k": "0.5", "b": "0.05"}
 )
+TWO_WALLS = {
+    "linear": si.linear("2.8", "-0.5", "0.8", upper=("0.5", "0.7")),
+    "impact pair": si.models.impact_pair(),
+    "harvester": si.models.harvester(),
+    "stops": si.models.shaw_stops(),
+    "Duffing": si.ImpactOscillator(
+        "x + 0.1*xdot + 0.3*x**3", "cos(omega*t)", "-0.3", "0.6", {"omega": "1.7"}, upper="0.4", upper_restitution="0.8"
+    ),
+    "bent": BENT.replace(clearance="-0.2", upper="0.3", upper_restitution="-0.7*v + b*v**2"),
+}
 
 
 @pytest.fixture(scope="module")
@@ -74,6 +85,7 @@ def test_positive_swan_has_gamma_too():
         (NEGATIVE, {"between": (3, 2)}, "between"),
         (NEGATIVE, {"steps": 1}, "steps = 1"),
         (3, {}, "model = 3"),
+        (TWO_WALLS["linear"], {"between": ("-0.6", "0.5")}, "below the upper wall, which stays at x = 0.5"),
     ],
 )
 def test_refusals(model, given, told):
@@ -120,6 +132,50 @@ def test_a_page_as_it_is_asked_for_has_400_kilobytes_at_most(name):
     assert len(si.models[name]().explore().html.encode()) < 400_000
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["impact pair", "harvester", "stops", "Duffing"])
+def test_a_page_of_two_walls_is_not_larger(name):
+    assert len(TWO_WALLS[name].explore().html.encode()) < 400_000
+
+
+def test_a_restitution_with_a_parameter_of_its_own_is_shown_at_a_swan():
+    model = si.ImpactOscillator("x", "cos(2*t)", "0.9", "-0.8*v + b*v**2", {"b": "0.05"})
+    assert clearance_film(model, steps=2).swan.clearance == 1
+
+
+@pytest.mark.parametrize(
+    ("model", "swan"),
+    [
+        (TWO_WALLS["linear"], -1),
+        (si.linear("2.8", "0.5", "0.8", upper="0.9"), -1),  # the swan at 1 lies above the upper wall
+        (si.linear("2.8", "0.9", "0.8", upper="1.01"), 1),
+        (TWO_WALLS["harvester"].replace(clearance="0.45"), None),
+    ],
+)
+def test_the_slider_ends_below_the_upper_wall(model, swan):
+    film = clearance_film(model, steps=4)
+    assert (film.swan and film.swan.clearance) == swan
+    own, upper = float(str(model.clearance)), float(str(model.upper))
+    places = [frame.clearance for frame in film.frames]
+    assert own in places
+    assert own < places[-1] < upper
+    assert f"The upper wall stays at x = {upper}; the curves are of the lower." in film.sentence
+
+
+def test_curves_of_two_walls_end_at_the_cut():
+    model = si.linear("2.8", "-0.3", "0.8", upper="-0.299")
+    frame, alone = (clearance_film(osc, steps=3).frames[1] for osc in (model, model.one_wall()))
+    assert frame.clearance == alone.clearance == -0.3
+    surface = si.ImpactSurface(model.replace(clearance=-0.3), frame.view.tau, frame.view.t, 1 / 300)
+    assert [curve.points.tolist() for curve in frame.curves["cut"]] == [curve.points.tolist() for curve in surface.cut]
+    drawn = frame.curves["cut-launches"] + frame.curves["jumps"]
+    assert sum(map(len, drawn)) == sum(map(len, surface.discontinuities))
+    assert {curve.name for curve in frame.curves["jumps"]} <= {"P"}
+    assert {curve.name for curve in frame.curves["cut-launches"]} == {"cut"}
+    assert sum(map(len, frame.curves["Z"])) < sum(map(len, alone.curves["Z"]))
+    assert not {"cut", "cut-launches"} & set(alone.curves)
+
+
 def test_windows_follow_the_swan(film):
     """A window holds the curves of its frame and is not much larger."""
     for frame in film.frames[:2]:
@@ -150,11 +206,9 @@ def test_a_text_of_the_model_ends_no_script():
 def opened(browser, film, tmp_path):
     """The browser with the page of the film, or of another model; a page that complains fails its test."""
 
-    def show(model=None):
+    def show(model=None, between=("0.1", "0.2"), steps=2):
         place = tmp_path / "page.html"
-        place.write_text(
-            explore_page(film if model is None else clearance_film(model, between=("0.1", "0.2"), steps=2))
-        )
+        place.write_text(explore_page(film if model is None else clearance_film(model, between=between, steps=steps)))
         browser.get(place.as_uri())
         return browser
 
@@ -286,6 +340,151 @@ def test_orbits_of_the_page_are_those_of_python(opened, model):
         shifted = flown(browser, model.replace(clearance=float(str(model.clearance)) + 1e-9), tau, v, 12)
         assert np.abs(np.array(shifted["tau"][1:kept]) / truth.tau[1:kept] - 1).max() > 1e-12  # the comparison can fail
     assert compared >= 20
+
+
+FLOWN_FROM = """const fly = flyer(MODEL.clearance, MODEL.r, MODEL.parameters, MODEL.period);
+%s
+return arguments[0].map(([tau, v, wall, most]) => flown(wall ? fly.across : fly, tau, v, most));"""
+FAULTS = {
+    "tau": "fly.rules.gap += 1e-6;",
+    "wall": "fly.across.rules.gap = Infinity;",
+    "v": "fly.across.w = fly.across.w.map((each) => 0.99 * each);",
+}
+"""Another place of the upper wall, a lower wall that is passed, another restitution: columns that they change."""
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["linear", "impact pair", "Duffing", *(pytest.param(name, marks=SLOW) for name in ("harvester", "stops", "bent"))],
+)
+def test_flights_between_two_walls_are_those_of_python(opened, name):
+    model, rng = TWO_WALLS[name], np.random.default_rng(5)
+    browser = opened(model)
+    tau, v, walls = rng.uniform(-5, 5, 150), rng.uniform(0.02, 2, 150), rng.integers(0, 2, 150)
+    truth = model.impact_map(tau, v, wall=walls)
+    own = np.flatnonzero((truth.status == si.Status.hit) & (np.abs(truth.velocity) > 1e-2 * v))
+    assert own.size > 120
+    assert len({*zip(walls[own], truth.wall[own], strict=True)}) == 4  # from both walls to both
+    rows = [[float(tau[k]), float(v[k]), int(walls[k]), 1] for k in own]
+
+    def columns(fault=""):
+        orbits = browser.execute_script(FLOWN_FROM % fault, rows)
+        return {key: np.array([orbit[key][-1] for orbit in orbits]) for key in ("tau", "v", "wall")}
+
+    found = columns()
+    assert (found["wall"] == truth.wall[own]).all()
+    for key in ("tau", "v"):
+        wanted = getattr(truth, key)[own]
+        assert (np.abs(found[key] - wanted) <= 1e-11 * (1 + np.abs(wanted))).all()
+    for key, fault in FAULTS.items():
+        assert (np.abs(columns(fault)[key] - found[key]) > 1e-8).any(), key
+
+
+@pytest.mark.parametrize("name", ["linear", "impact pair", "Duffing", pytest.param("bent", marks=SLOW)])
+@pytest.mark.parametrize("wall", [0, 1])
+def test_orbits_between_two_walls_are_those_of_python(opened, name, wall):
+    model, starts = TWO_WALLS[name], ((0.3, 0.5), (1.1, 1.7), (-2.0, 0.9))
+    rows = [[tau, v, wall, 12] for tau, v in starts]
+    shown = opened(model).execute_script(FLOWN_FROM % "", rows)
+    for (tau, v), found in zip(starts, shown, strict=True):
+        truth = model.orbit(tau, v, impacts=12, wall=wall)
+        assert found["wall"] == truth.wall.tolist()
+        assert found["kind"] == truth.kind.tolist()
+        for key in ("tau", "v"):
+            # rounding errors grow along an orbit
+            assert np.abs(np.array(found[key][:8]) / getattr(truth, key)[:8] - 1).max() < 1e-10
+    assert {1} < {*np.concatenate([found["wall"] for found in shown])}
+
+
+def test_both_walls_and_their_impacts_are_drawn(opened):
+    model = TWO_WALLS["Duffing"]
+    browser = opened(model, between=None, steps=3)
+    browser.execute_script("start_orbit(0.3, 0.5)")
+    truth = model.orbit(0.3, 0.5, impacts=200)
+    shown = browser.execute_script("""const dots = (name) => document.querySelectorAll(`[data-dots=${name}] circle`);
+    const ends = [...document.querySelectorAll("#motion [data-wall]")].map((line) => Number(line.dataset.wall));
+    return { walls: ends, heights: film.points.map((point) => point[1]), orbit: state.orbit,
+      counts: ["orbit", "orbit-upper", "impacts", "impacts-upper"].map((name) => dots(name).length),
+      open: document.querySelector("[data-dots=orbit-upper]").getAttribute("fill"),
+      labels: [...document.querySelectorAll("#legend li")].map((line) => line.textContent),
+      notes: at("notes").textContent, start: at("wall").value }""")
+    upper = int((truth.wall == 1).sum())
+    assert shown["counts"][:2] == [201 - upper, upper]
+    assert shown["walls"] == [0, pytest.approx(0.7)]
+    assert 0 < shown["counts"][3] < shown["counts"][2]
+    assert max(shown["heights"]) == pytest.approx(0.7, abs=1e-12)
+    assert min(shown["heights"]) >= -1e-12
+    assert shown["open"].lower() == "#ffffff"
+    assert {"impacts of the orbit at the upper wall", "cut: the flight grazes the upper wall"} <= set(shown["labels"])
+    assert f"200 impacts, {upper} of them at the upper wall," in shown["notes"]
+    time = 0.5 * (truth.tau[1] + truth.tau[2])  # of a flight that starts at the upper wall, or ends there
+    assert {*truth.wall[1:3].tolist()} == {0, 1}
+    height = browser.execute_script("return height(arguments[0])", time)
+    assert height == pytest.approx(float(truth.sample(time).x) + 0.3, abs=5e-3)
+    assert browser.execute_script("return csv()").splitlines()[:2] == ["tau,v,kind,wall", "0.3,0.5,start,0"]
+
+
+def test_the_cut_is_drawn_in_both_planes(opened):
+    model = si.linear("2.8", "-0.3", "0.8", upper="-0.299")
+    browser = opened(model, between=None, steps=3)
+    browser.execute_script("at('axes').value = 'follow'; show()")
+    frame = clearance_film(model, steps=3).frames[1]
+    for panel, name in (("surface", "cut"), ("states", "cut-launches")):
+        curves, _, pixel, colors = read(browser, panel)
+        points = np.vstack([curve.points for curve in frame.curves[name]])
+        drawn = np.vstack(curves["cut"])
+        assert len(points) / 2 <= len(drawn) < 0.6 * len(points) + 2
+        assert max(np.abs((points - point) / pixel).max(axis=1).min() for point in drawn) < 0.05
+        assert colors["cut"] == PENS["cut"].color
+
+
+def test_curves_sketched_between_two_walls_end_at_the_cut(opened):
+    model = si.ImpactOscillator("x", "cos(w*t)", "-0.3", "0.8", {"w": "2.8"}, upper="-0.299")
+    browser = opened(model, between=None, steps=3)
+    frame = clearance_film(si.linear("2.8", "-0.3", "0.8", upper="-0.299"), steps=3).frames[1]
+    ask = "return sketched(flyer(-0.3, 0.8, { w: 2.8 }, MODEL.period), arguments[0], 160, 161)"
+    found = browser.execute_script(ask, {"tau": frame.view.tau, "t": frame.view.t})
+    cell = np.array([np.ptp(frame.view.tau), np.ptp(frame.view.t)]) / 160 * 3
+    drawn = np.vstack([np.reshape(part, (-1, 2)) for part in found["Z"]])
+    true = np.vstack([curve.points for curve in frame.curves["Z"]])
+    for points, line in ((drawn, true), (true, drawn)):
+        assert np.abs((points[:, None] - line[None]) / cell).max(axis=2).min(axis=1).max() < 1
+
+
+def test_chatter_at_the_upper_wall_is_that_of_python(opened):
+    model = si.ImpactOscillator("x", "1 + 2*cos(t)", "-1", "0.6", upper="0.3")
+    truth = model.orbit(-0.5, 0.02, impacts=300, wall="upper")
+    (found,) = opened(model).execute_script(FLOWN_FROM % "", [[-0.5, 0.02, 1, 300]])
+    for kind in ("complete", "release"):
+        first, second = truth.kind.tolist().index(kind), found["kind"].index(kind)
+        assert truth.wall[first] == found["wall"][second] == 1
+        assert truth.tau[first] == pytest.approx(found["tau"][second], rel=1e-11)
+
+
+@pytest.mark.parametrize(("g", "wall", "told"), [("-2", 0, "touches the upper wall"), ("2", 1, "touches x = c")])
+def test_a_touch_of_the_other_wall_ends_the_orbit(opened, g, wall, told):
+    """x = 2 t - t^2 between 0 and 1, from either wall."""
+    browser = opened(si.ImpactOscillator("0", g, 0, "1/2", upper=1))
+    browser.execute_script("FILM.frames[0].c = 0; to_frame(0); start_orbit(0, 2, arguments[0])", wall)
+    assert told in browser.execute_script("return at('notes').textContent")
+    browser.execute_script("start_orbit(0, arguments[0])", 2 * (1 + 1e-12))
+    assert browser.execute_script("return state.orbit.wall.slice(0, 2)") == [wall, 1 - wall]
+    assert "nearly a graze" in browser.execute_script("return at('notes').textContent")
+
+
+def test_a_link_keeps_the_wall_and_its_restitution(opened):
+    browser = opened(TWO_WALLS["Duffing"])
+    browser.execute_script(MOVE, "restitution-upper", 120)
+    browser.execute_script("start_orbit(0.7, 0.25)")
+    browser.execute_script(MOVE, "wall", 1)
+    asked = "return [state.r, state.r_upper, state.wall, ...state.orbit.wall.slice(0, 5), ...state.orbit.v.slice(0, 5)]"
+    before, link = browser.execute_script(asked), browser.execute_script("return location.pathname + address()")
+    assert before[:4] == [0.6, pytest.approx(0.604), 1, 1]
+    browser.get("about:blank")
+    browser.get(f"file://{link}")
+    assert browser.execute_script(asked) == before
+    model = TWO_WALLS["Duffing"].replace(clearance="0.1", upper_restitution=before[1])
+    assert model.orbit(0.7, 0.25, impacts=4, wall="upper").wall.tolist() == before[3:8]
 
 
 def test_parameters_moved_are_those_of_another_model(opened):
