@@ -275,9 +275,7 @@ def call(function: str, u: Any) -> Any:
             u = off_the_cut(u)
         elif function == "atan":
             u = off_the_cuts_of_atan(u)
-    if function == "tanh" and isinstance(u, flint.arb_series):
-        return _tanh(u)
-    return getattr(u, function)()
+    return _tanh(u) if function == "tanh" and isinstance(u, flint.arb_series) else getattr(u, function)()
 
 
 def off_the_cut(u: flint.acb) -> flint.acb:

@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise, product
-from math import lcm
+from math import lcm, prod
 from typing import Any
 
 import sympy
@@ -97,9 +97,7 @@ def expansion(poly: Any, box: Sequence[tuple[Any, Any]]) -> Certificate | None:
         for key, value in poly.terms():
             for powers in product(*(line[exponent].items() for line, exponent in zip(lines, key, strict=True))):
                 at = tuple(power for power, _ in powers)
-                term = Fraction(int(value.p), int(value.q))
-                for _, factor in powers:
-                    term *= factor
+                term = prod((factor for _, factor in powers), start=Fraction(int(value.p), int(value.q)))
                 total[at] = total.get(at, Fraction(0)) + term
         if all(value >= 0 for value in total.values()):
             return {

@@ -110,8 +110,7 @@ def _chain(data: Mapping[str, Any]) -> bool:
     poly, places = terms(data["polynomial"]), data["places"]
     order = [_order(point["at"]) for point in places]
     for point in places:
-        value = _at(poly, 0, point["at"])
-        signed = {key[1:]: number * point["sign"] for key, number in value.items()}
+        signed = {key[1:]: number * point["sign"] for key, number in _at(poly, 0, point["at"]).items()}
         if point["sign"] not in (-1, 1) or not _expands(signed, point | {"box": data["box"]}):
             return False
     gaps = [[a["at"], b["at"]] for a, b in pairwise(places) if a["sign"] != b["sign"]]
@@ -139,8 +138,7 @@ def _count(data: Mapping[str, Any]) -> bool:
 
 def _changes(chain: list[Terms], place: str) -> int:
     values = [sum(_at(part, 0, place).values(), Fraction(0)) for part in chain]
-    signs = [value > 0 for value in values if value]
-    return sum(a != b for a, b in pairwise(signs))
+    return sum(a != b for a, b in pairwise([value > 0 for value in values if value]))
 
 
 def _value(data: Mapping[str, Any]) -> bool:

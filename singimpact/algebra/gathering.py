@@ -112,7 +112,6 @@ def remembered(function: Callable[P, R]) -> Callable[P, R]:
 
     @wraps(function)
     def derive(*args: P.args, **kwargs: P.kwargs) -> R:
-        key = (args, tuple(sorted(kwargs.items())))
-        return results.result(key, lambda: function(*args, **kwargs))
+        return results.result((args, tuple(sorted(kwargs.items()))), lambda: function(*args, **kwargs))
 
     return derive

@@ -41,9 +41,8 @@ class Horner:
         for (i, k), value in terms.items():
             rows.setdefault(k, {})[i] = value
         self._first = min(rows, default=0)
-        top = max(rows, default=0)
         # from the highest power of y down: [c_i of x^i, highest first]
-        self._rows = [self._row(rows.get(k, {})) for k in range(top, self._first - 1, -1)]
+        self._rows = [self._row(rows.get(k, {})) for k in range(max(rows, default=0), self._first - 1, -1)]
 
     @staticmethod
     def _row(row: Mapping[int, Any]) -> list[tuple[float, float]]:

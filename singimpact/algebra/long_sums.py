@@ -43,8 +43,7 @@ class Monomials:
         if not made:
             return constant[0] if constant else sympy.S.Zero
         made.sort(key=lambda pair: pair[0])
-        parts = [*constant, *(term for _, term in made)]
-        return sympy.Add._from_args(parts, is_commutative=True)
+        return sympy.Add._from_args([*constant, *(term for _, term in made)], is_commutative=True)
 
     def _factor(self, place: int, exponent: int) -> tuple[Key, Any]:
         """A power of a symbol, with the key by which sympy sorts it among others."""
@@ -66,13 +65,12 @@ class Monomials:
         return (MULTIPLE, len(args), keys), sympy.Mul._from_args(args, is_commutative=True)
 
 
+SINGLE_CLASSES: dict[tuple[int, int], Key] = {(1, 2): (-4,), (-1, 1): (-3,)}  # rationals with a class of their own
+
+
 def _rational_key(p: int, q: int) -> Key:
     """The key of a rational: sympy sorts by its classes first, and numbers before symbols."""
-    if (p, q) == (1, 2):
-        return (-4,)
-    if (p, q) == (-1, 1):
-        return (-3,)
-    return (-2 if q == 1 else -1, p, q)
+    return SINGLE_CLASSES.get((p, q)) or (-2 if q == 1 else -1, p, q)
 
 
 CLASSES = {

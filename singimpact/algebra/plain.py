@@ -66,8 +66,7 @@ def raised(base: Terms, exponent: int, size: int) -> Terms:
 
 def line(constant: Fraction, slope: int, index: int, size: int) -> Terms:
     """constant + slope x_index."""
-    unit = tuple(int(n == index) for n in range(size))
-    return plus({(0,) * size: constant}, {unit: Fraction(slope)})
+    return plus({(0,) * size: constant}, {tuple(int(n == index) for n in range(size)): Fraction(slope)})
 
 
 def slope(poly: Terms, index: int) -> Terms:

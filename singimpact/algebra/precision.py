@@ -127,9 +127,7 @@ def for_user(value: Any) -> Any:
     """A number as one of `mpmath.mp`, with all its bits."""
     import mpmath
 
-    if hasattr(value, "_mpc_"):
-        return mpmath.mp.make_mpc(value._mpc_)
-    return mpmath.mp.make_mpf(value._mpf_)
+    return mpmath.mp.make_mpc(value._mpc_) if hasattr(value, "_mpc_") else mpmath.mp.make_mpf(value._mpf_)
 
 
 def negative(value: Any) -> Any:

@@ -7,7 +7,7 @@ Solvers run on them level by level: `number` is what scalars of the solver are m
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from fractions import Fraction
 from functools import cmp_to_key
 from typing import Any
@@ -171,10 +171,7 @@ def univariate(ring: Any) -> Any:
 @contextmanager
 def precision_of(ring: Any) -> Iterator[None]:
     """Arithmetic of balls at the precision of their ring; nothing for the other rings."""
-    if not isinstance(ring, Balls):
-        yield
-        return
-    with balls_at(ring.bits):
+    with balls_at(ring.bits) if isinstance(ring, Balls) else nullcontext():
         yield
 
 
@@ -197,8 +194,7 @@ def real_roots(coefficients: Sequence[Fraction], balls: Balls) -> list[flint.arb
     """
     poly: Any = flint.fmpq_poly([flint.fmpq(c.numerator, c.denominator) for c in coefficients]).numer()
     isolated: list[Any] = [root.real for root, _ in poly.complex_roots() if root.imag == 0]
-    ordered = sorted(isolated, key=cmp_to_key(_order))
-    return [refined(poly, root, balls.bits) for root in ordered]
+    return [refined(poly, root, balls.bits) for root in sorted(isolated, key=cmp_to_key(_order))]
 
 
 def _order(left: flint.arb, right: flint.arb) -> int:

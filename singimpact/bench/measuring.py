@@ -249,9 +249,9 @@ def measure(group: str, case: Case, effort: Effort) -> list[Row]:
 
 def _rounds(fresh: bool, effort: Effort) -> int:
     """The number of rounds after the first; 0 where the first one is the measurement."""
-    if fresh and effort.fresh == 1:
-        return 0
-    return min(effort.fresh, effort.rounds) if fresh else effort.rounds
+    if not fresh:
+        return effort.rounds
+    return 0 if effort.fresh == 1 else min(effort.fresh, effort.rounds)
 
 
 def cpu_seconds() -> float:

@@ -6,16 +6,17 @@ A case is a model and some states; it is drawn from its number and the seed alon
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
-from math import log2, pi
-from typing import Any, NamedTuple
+from math import inf, log2, pi
+from typing import Any
 
 import flint
 import numpy as np
 
 from singimpact.algebra.numbers import EPSILON, Array
 from singimpact.algebra.precision import balls_at
+from singimpact.bench.stress.launches import CUBIC, Launch
 from singimpact.bench.truth.first_hit import Above, Cubic, Linear, first_hit, first_of_both
 from singimpact.cases import sweep
 from singimpact.impact_oscillator import ImpactOscillator, linear
@@ -52,19 +53,8 @@ BETWEEN_WALLS_FROM = 10**9
 COLUMNS = ("status", "time_error", "velocity_error", "wrong", "tau", "v", "depth", "bound")
 
 
-class Model(NamedTuple):
+class Model(Launch):
     """An oscillator of a family between its walls, and the wall of the launches; with one wall `upper` is None."""
-
-    family: str
-    omega: float
-    clearance: float
-    upper: float | None = None
-    wall: int = 0
-
-    @property
-    def gap(self) -> Any:
-        """The distance of both walls, a ball."""
-        return flint.arb(self.upper) - flint.arb(self.clearance)
 
     @property
     def horizon(self) -> float:
@@ -76,22 +66,12 @@ class Model(NamedTuple):
         law = None if self.upper is None else "0.7"
         if self.family == "linear":
             return linear(self.omega, self.clearance, "0.8", upper=law and (self.upper, law))
-        force, walls = "x + xdot/10 + 3*x**3/10", {"upper": self.upper, "upper_restitution": law}
-        return ImpactOscillator(force, "cos(omega*t)", self.clearance, "0.8", {"omega": self.omega}, **walls)
+        walls = {"upper": self.upper, "upper_restitution": law}
+        return ImpactOscillator(CUBIC, "cos(omega*t)", self.clearance, "0.8", {"omega": self.omega}, **walls)
 
-    def motion(self, tau: Any, v: Any) -> Any:
-        """The flight from the wall of the launches, up from there."""
-        place, push = (-self.upper, -1) if self.wall and self.upper is not None else (self.clearance, 1)
-        made = Linear if self.family == "linear" else Cubic
-        return made(self.omega, place, tau, v, push=push)
-
-    def back_from_touch(self, tau: float) -> Any:
+    def back_from_touch(self, tau: float) -> Linear | Cubic:
         """The flight backwards from a touch of the wall at tau, or of the other wall where there is one."""
-        touched = self if self.upper is None else self._replace(wall=1 - self.wall)
-        if self.family == "linear":
-            return touched.motion(-tau, 0.0)
-        place = touched.motion(0.0, 0.0)
-        return Cubic(self.omega, float(place.c), -tau, 0.0, -1, place.push)
+        return (self if self.upper is None else replace(self, wall=1 - self.wall)).motion(-tau, 0.0, -1)
 
 
 def check(count: int, seed: int, executor: Any = None, output: Any = None, between_walls: bool = False) -> list[Row]:
@@ -121,8 +101,7 @@ def case(seed: int, number: int) -> Array:
     """An array (states, COLUMNS); errors in units of what is allowed."""
     family, regime = kind_of(number).split()[:2]
     rng = np.random.default_rng([seed, number])
-    drawn = _drawn_between if number >= BETWEEN_WALLS_FROM else _drawn
-    model, states = drawn(rng, family, regime)
+    model, states = _drawn(rng, family, regime, number >= BETWEEN_WALLS_FROM)
     tau, v = np.array(states).T
     wall = None if model.upper is None else model.wall
     osc: Any = model.oscillator()
@@ -136,27 +115,39 @@ def case(seed: int, number: int) -> Array:
     return np.array(rows)
 
 
-def _drawn(rng: np.random.Generator, family: str, regime: str) -> tuple[Model, list[tuple[float, float]]]:
-    """A model with one wall, and states (tau, v)."""
-    if regime == "long":
-        near = [1.0, 1 + 1e-12, 1 - 1e-12, 1 + 10 ** rng.uniform(-9, -1.3), 1 - 10 ** rng.uniform(-9, -1.3)]
-        omega = float(rng.choice(near))
-        clearance = float(-rng.uniform(3, 60) if family == "linear" else -rng.uniform(0.7, 1.6))
-    else:
-        omega, clearance = float(rng.uniform(0.3, 3.5)), float(rng.uniform(-0.9, 0.9))
-    model, states = Model(family, omega, clearance), list[tuple[float, float]]()
+def _drawn(
+    rng: np.random.Generator, family: str, regime: str, between: bool
+) -> tuple[Model, list[tuple[float, float]]]:
+    """A model with one wall or two, and states (tau, v) at one of them."""
+    model, gap = (_between if between else _alone)(rng, family, regime)
+    states: list[tuple[float, float]] = []
     for _ in range(DRAW.tries * DRAW.each):
-        tau, v = float(rng.uniform(-1, 1) * 2 * pi / omega), float(rng.uniform(0.01, 3))
-        if regime == "low":
+        tau, v = float(rng.uniform(-1, 1) * 2 * pi / model.omega), float(rng.uniform(0.01, 3))
+        if regime == "low" and between:
+            v = float(10 ** rng.uniform(-150, -3))
+        elif regime == "low":
             v = float(10 ** rng.uniform(-12, -3) if rng.random() < 0.9 else 10 ** rng.uniform(-300, -12))
+        elif regime == "narrow":  # as fast as what reaches the other wall, or a tenth or ten times that
+            v = float((2 * gap) ** 0.5 * 10 ** rng.uniform(-1, 1))
+        elif regime == "wide":
+            v *= gap
         states += _grazing(rng, model, tau) if regime == "graze" else [(tau, v)]
         if len(states) == DRAW.each:
             return model, states
-    return _drawn(rng, family, regime)  # few flights of that model touch: another one
+    return _drawn(rng, family, regime, between)  # few flights of that model touch: another one
 
 
-def _drawn_between(rng: np.random.Generator, family: str, regime: str) -> tuple[Model, list[tuple[float, float]]]:
-    """A model with two walls, and states (tau, v) at one of them."""
+def _alone(rng: np.random.Generator, family: str, regime: str) -> tuple[Model, float]:
+    """A model with one wall, and inf for the distance of another one."""
+    if regime != "long":
+        return Model(family, float(rng.uniform(0.3, 3.5)), float(rng.uniform(-0.9, 0.9))), inf
+    near = [1.0, 1 + 1e-12, 1 - 1e-12, 1 + 10 ** rng.uniform(-9, -1.3), 1 - 10 ** rng.uniform(-9, -1.3)]
+    omega = float(rng.choice(near))
+    return Model(family, omega, float(-rng.uniform(3, 60) if family == "linear" else -rng.uniform(0.7, 1.6))), inf
+
+
+def _between(rng: np.random.Generator, family: str, regime: str) -> tuple[Model, float]:
+    """A model with two walls, and their distance."""
     omega, clearance = float(rng.uniform(0.3, 3.5)), float(rng.uniform(-0.9, 0.9))
     sizes = {"low": (-12, 0.5), "narrow": (-12, -1), "wide": (0, 6 if family == "linear" else 1.5)}
     gap = 10 ** rng.uniform(*sizes.get(regime, (-1.3, 0.5)))
@@ -165,20 +156,8 @@ def _drawn_between(rng: np.random.Generator, family: str, regime: str) -> tuple[
         clearance, gap = (-10, 30) if family == "linear" else (-1, 3)
     elif regime == "graze" and rng.random() < 0.5:
         gap = 10 ** rng.uniform(-9, 0)
-    model = Model(family, omega, float(clearance), float(clearance + gap), int(rng.integers(2)))
-    states: list[tuple[float, float]] = []
-    for _ in range(DRAW.tries * DRAW.each):
-        tau, v = float(rng.uniform(-1, 1) * 2 * pi / omega), float(rng.uniform(0.01, 3))
-        if regime == "low":
-            v = float(10 ** rng.uniform(-150, -3))
-        elif regime == "narrow":  # as fast as what reaches the other wall, or a tenth or ten times that
-            v = float((2 * gap) ** 0.5 * 10 ** rng.uniform(-1, 1))
-        elif regime == "wide":
-            v *= gap
-        states += _grazing(rng, model, tau) if regime == "graze" else [(tau, v)]
-        if len(states) == DRAW.each:
-            return model, states
-    return _drawn_between(rng, family, regime)
+    upper = float(clearance + gap)
+    return Model(family, omega, float(clearance), upper=upper, wall=int(rng.integers(2))), gap
 
 
 def _grazing(rng: np.random.Generator, model: Model, tau: float) -> Iterator[tuple[float, float]]:
@@ -204,10 +183,7 @@ def _errors(model: Model, tau: float, v: float, step: list[float]) -> tuple[floa
     period = 2 * pi / model.omega
     with balls_at(DRAW.bits + int(4 * max(-log2(v), 0))):
         motion = model.motion(tau, v)
-        if model.upper is None:
-            truth = first_hit(motion, v, model.horizon)
-        else:
-            truth = first_of_both(motion, v, model.horizon, model.gap)
+        truth = first_of_both(motion, v, model.horizon, model.gap)
         if truth is None:
             return 0.0, 0.0, float(status not in (Status.no_return, Status.escaped, Status.unresolved))
         if status != Status.hit:

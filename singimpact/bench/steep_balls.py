@@ -102,10 +102,12 @@ def enclosed(seed: int, state: Flown) -> Array:
         row["true_status"] = UNDECIDED
     row["seconds"] = process_time() - begin
     if row["true_status"] == HIT:
-        row["time_error"] = _off(state.flight_time, ball.flight_time)
-        row["velocity_error"] = _off(state.velocity, ball.velocity)
-        row["step_time_error"] = _off(state.step_time, ball.flight_time)
-        row["step_velocity_error"] = _off(state.step_velocity, ball.velocity)
+        row.update(
+            time_error=_off(state.flight_time, ball.flight_time),
+            velocity_error=_off(state.velocity, ball.velocity),
+            step_time_error=_off(state.step_time, ball.flight_time),
+            step_velocity_error=_off(state.step_velocity, ball.velocity),
+        )
         if state.digits:
             row.update(_with_digits(osc, (tau, v), ball.flight_time))
     return np.array([row[name] for name in COLUMNS])

@@ -76,8 +76,7 @@ def flown(seed: int, number: int) -> Array:
     apart = impacts_[0].status != impacts_[1].status
     if shown == BOTH:
         apart |= any(disjoint(getattr(impacts[0], name), getattr(impacts[1], name)) for name in impacts[0].NUMBERS)
-    time = float(impacts_[1].flight_time)
-    return np.array([float(impacts_[1].status), shown, apart, time, *spent])
+    return np.array([float(impacts_[1].status), shown, apart, float(impacts_[1].flight_time), *spent])
 
 
 def disjoint(one: Certified, other: Certified) -> bool:

@@ -107,15 +107,12 @@ def family_of(number: int) -> Family:
     if number >= PARAMETRIC_FROM:
         return PARAMETRIC[number % len(PARAMETRIC)]
     turn, place = divmod(number, DRAW.smooth)
-    if place == DRAW.smooth - 1:
-        return SMOOTH[turn % len(SMOOTH)]
-    return STEEP[(number - turn) % len(STEEP)]
+    return SMOOTH[turn % len(SMOOTH)] if place == DRAW.smooth - 1 else STEEP[(number - turn) % len(STEEP)]
 
 
 def drawn(seed: int, number: int, each: int = DRAW.each) -> Case:
     """The case of a number; layers lie where its flights go."""
-    rng = np.random.default_rng([seed, number])
-    return drawn_of(family_of(number), rng, each)
+    return drawn_of(family_of(number), np.random.default_rng([seed, number]), each)
 
 
 def drawn_of(family: Family, rng: Generator, count: int) -> Case:
@@ -190,9 +187,8 @@ def check(
     parametric : fly the parametric families alone, a quarter of the states each.
     """
     cases = -(-count // DRAW.each)
-    numbers = range(cases + cases // (DRAW.smooth - 1))
-    if parametric:
-        numbers = range(PARAMETRIC_FROM, PARAMETRIC_FROM + cases)
+    first, more = (PARAMETRIC_FROM, 0) if parametric else (0, cases // (DRAW.smooth - 1))
+    numbers = range(first, first + cases + more)
     table = sweep(partial(flown, seed), numbers, executor, output).reshape(-1, len(COLUMNS))
     return {name: table[:, index] for index, name in enumerate(COLUMNS)}
 

@@ -342,8 +342,7 @@ def _text(found: Measured, form: str) -> str:
     from singimpact.bench.report import NOTE, reached, skipped, table
 
     laid_out = columns if form == "text" else markdown
-    heading = found.group if form == "text" else f"## {found.group}"
-    parts = [heading, laid_out(*table(found)), skipped(found)]
+    parts = [found.group if form == "text" else f"## {found.group}", laid_out(*table(found)), skipped(found)]
     if any(row.wrong is not None for row in found.rows):
         parts.append(NOTE)
     parts.append(reached(found))
@@ -361,8 +360,6 @@ def _states(
     states: int, seed: int, workers: int | None, keep: str | None, between_walls: bool
 ) -> tuple[list[dict[str, Any]], str]:
     """Random states against the truth."""
-    from dataclasses import asdict
-
     from singimpact.bench.random_states import check
     from singimpact.case_pools import WorkerPool
 

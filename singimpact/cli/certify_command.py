@@ -147,8 +147,7 @@ def _event(orbit: Any, kind: str, over: str, low: float, high: float) -> Any:
     """The first event of a kind, of visible orbits of a branch."""
     from singimpact.branches.branch import branch
 
-    events = branch(orbit, over, (low, high)).events
-    found = [each for each in events if each.kind == kind and each.orbit.visible]
+    found = [each for each in branch(orbit, over, (low, high)).events if each.kind == kind and each.orbit.visible]
     if not found:
         raise InputError(f"--event {kind} {over} {low:g} {high:g}: no {kind} of visible orbits is found there")
     return found[0]

@@ -18,7 +18,5 @@ ENTRY = f"""@software{{singimpact,
 @output_options
 def command(as_json: bool, output: str | None) -> None:
     """References to cite: this version, with a BibTeX entry, and the paper."""
-    if as_json:
-        emit(as_json_text({"software": SOFTWARE, "paper": PAPER, "bibtex": ENTRY}), output)
-    else:
-        emit(f"{SOFTWARE}\n{PAPER}\n\n{ENTRY}", output)
+    data = {"software": SOFTWARE, "paper": PAPER, "bibtex": ENTRY}
+    emit(as_json_text(data) if as_json else f"{SOFTWARE}\n{PAPER}\n\n{ENTRY}", output)

@@ -74,10 +74,8 @@ def graph(svg: bool, as_json: bool, output: str | None) -> None:
 
     if as_json:
         emit(as_json_text({name: list(entry.rests_on) for name, entry in INDEX.items()}), output)
-    elif svg:
-        emit(as_svg(INDEX, _kinds()), output)
     else:
-        emit(as_text(INDEX), output)
+        emit(as_svg(INDEX, _kinds()) if svg else as_text(INDEX), output)
 
 
 def _kinds() -> dict[str, str]:

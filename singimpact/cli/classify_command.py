@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 ORBIT = ("n", "k", "kind", "stable", "tau", "v")
 CHANGE = ("kind", "value", "n", "k", "below", "above")
 """Of an orbit and of a change of orbits, in JSON."""
+SEEN = {None: "not decided", True: "yes", False: "no"}
 
 
 @click.command()
@@ -68,10 +69,12 @@ def command(
     swans_between = interval(between) if between is not None and over in (None, "clearance") else None
     points = classify(oscillator.seen_from(wall), window_tau, window_t, swans_between)
     changes = None if over is None else _transitions(oscillator, wall, over, between, points.t, orbits)
-    if as_json:
-        emit(as_json_text({"model": oscillator.to_dict(), **_as_listed(points, over, changes)}), output)
-    else:
-        emit(_text(points, over, changes), output)
+    emit(
+        as_json_text({"model": oscillator.to_dict(), **_as_listed(points, over, changes)})
+        if as_json
+        else _text(points, over, changes),
+        output,
+    )
 
 
 def _transitions(oscillator: Any, wall: str | None, over: str, between: Any, t: Any, orbits: int | None) -> Transitions:
@@ -128,7 +131,7 @@ def _text(points: Classification, over: str | None, changes: Transitions | None)
         ),
     ]
     if changes is not None:
-        rows = [[c.kind, *_numbers(c.value, c.tau, c.t), _seen(c.visible)] for c in changes]
+        rows = [[c.kind, *_numbers(c.value, c.tau, c.t), SEEN[c.visible]] for c in changes]
         header = ["kind", str(over), "tau", "t", "visible"]
         tables.append(_table(f"where P changes as {over} moves", header, rows, changes.notes))
         if _with_orbits(changes):
@@ -137,10 +140,6 @@ def _text(points: Classification, over: str | None, changes: Transitions | None)
             tables.append("no swan between these ends is missing (by interval bounds)")
     low, high = _numbers(*points.tau), _numbers(*points.t)
     return "\n\n".join([f"window: tau from {' to '.join(low)}, t from {' to '.join(high)}", *tables])
-
-
-def _seen(visible: bool | None) -> str:
-    return "not decided" if visible is None else "yes" if visible else "no"
 
 
 def _table(title: str, header: list[str], rows: list[list[str]], notes: tuple[str, ...] = ()) -> str:

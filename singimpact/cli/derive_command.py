@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from singimpact.inputs import InputError
-from singimpact.store import folder
+from singimpact.store import folder, written
 
 if TYPE_CHECKING:
     from singimpact.documents.document_steps import Mark, Section
@@ -75,15 +75,10 @@ def command(
 
 
 def _derivations(names: tuple[str, ...], form: str, output: str | None) -> None:
-    from singimpact.documents.rendering import as_text
     from singimpact.paper.sections.stored_sections import kept_sections, marks_of
 
     derived = kept_sections(names)
-    marks = marks_of(derived)
-    if output is None:
-        click.echo(as_text(derived, marks, form), nl=False)
-    else:
-        _write(derived, marks, form, output)
+    _write(derived, marks_of(derived), form, output)
 
 
 def _request(order: int | None, model: str | None, tau: str | None, keep: tuple[str, ...]) -> SeriesRequest:
@@ -99,10 +94,8 @@ def _request(order: int | None, model: str | None, tau: str | None, keep: tuple[
 
 def _series(request: SeriesRequest, form: str, output: str | None) -> None:
     """The series as text to standard output, or as files in the folder."""
-    from singimpact.documents.rendering import as_text
     from singimpact.documents.series_documents import series_section, series_text
     from singimpact.paper.sections import NOTATION
-    from singimpact.store import written
 
     if form in ("sympy", "numpy", "json"):
         text = series_text(request, form)
@@ -112,18 +105,17 @@ def _series(request: SeriesRequest, form: str, output: str | None) -> None:
         with written(Path(output) / ("series.json" if form == "json" else f"series_{form}.py")) as draft:
             draft.write_bytes(text.encode())
         return
-    document = [series_section(request), NOTATION]
-    if output is None:
-        click.echo(as_text(document, {}, form), nl=False)
-    else:
-        _write(document, {}, form, output)
+    _write([series_section(request), NOTATION], {}, form, output)
 
 
-def _write(document: list[Section], marks: dict[str, Mark], form: str, output: str) -> None:
+def _write(document: list[Section], marks: dict[str, Mark], form: str, output: str | None) -> None:
+    """The document as text to standard output, or as files in the folder."""
     from singimpact.documents.compiling import CompileError
-    from singimpact.documents.rendering import as_files
-    from singimpact.store import written
+    from singimpact.documents.rendering import as_files, as_text
 
+    if output is None:
+        click.echo(as_text(document, marks, form), nl=False)
+        return
     try:
         files = as_files(document, marks, form, _picture)
     except CompileError as error:

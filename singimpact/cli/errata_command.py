@@ -29,10 +29,8 @@ def command(form: str, as_json: bool, output: str | None) -> None:
     misprints = errata()
     if form == "pdf":
         _write_pdf(misprints.latex(), str(output))
-    elif form == "json":
-        emit(as_json_text(misprints.as_dict()), output)
     else:
-        emit(getattr(misprints, form)(), output)
+        emit(as_json_text(misprints.as_dict()) if form == "json" else getattr(misprints, form)(), output)
 
 
 def _write_pdf(source: str, output: str) -> None:

@@ -115,8 +115,7 @@ def _with_impact(event: Event, free: Branch) -> Event:
     from singimpact.branches.branch import branch
 
     ends = float(free.parameter.min()), float(free.parameter.max())
-    through = branch(event.others()[0], event.over, ends)
-    same = [each for each in through.events if each.described.at_impact]
+    same = [each for each in branch(event.others()[0], event.over, ends).events if each.described.at_impact]
     return min(same, key=lambda each: abs(each.parameter - event.parameter))
 
 

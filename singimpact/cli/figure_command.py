@@ -9,7 +9,7 @@ import click
 
 from singimpact.cli.output import PICTURES, as_json_text, save_once
 from singimpact.inputs import refuse
-from singimpact.paper.figures import ACCEPTED, BEYOND, FIGURES
+from singimpact.paper.figures import ACCEPTED, BEYOND, FIGURES, kept_picture
 from singimpact.progress import ProgressLine
 from singimpact.store import folder, require_writable, write_text
 
@@ -60,7 +60,6 @@ def command(which: str, output: str, kind: str, serif: bool, dark: bool, data: b
 
 
 def _made(number: int | str, serif: bool, dark: bool) -> tuple[Any, Any]:
-    from singimpact.paper.figures import kept_picture
     from singimpact.paper.figures.figure_rendering import drawn
 
     picture = kept_picture(number)
@@ -68,8 +67,6 @@ def _made(number: int | str, serif: bool, dark: bool) -> tuple[Any, Any]:
 
 
 def _data(number: int | str) -> Any:
-    from singimpact.paper.figures import kept_picture
-
     return kept_picture(number).to_dict()
 
 

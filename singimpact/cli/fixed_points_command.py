@@ -14,8 +14,7 @@ def command(contact: str, restitution: str, digits: int, as_json: bool, output: 
     """Fixed points at a tangency or at a swan, each with a radius within which the true value lies."""
     from singimpact.theory import fixed_points
 
-    points = getattr(fixed_points, contact)(restitution, digits)
-    enclosures = points.as_dict()
+    enclosures = getattr(fixed_points, contact)(restitution, digits).as_dict()
     if as_json:
         emit(as_json_text(enclosures), output)
     else:

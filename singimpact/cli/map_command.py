@@ -64,16 +64,13 @@ def _paired(taus: tuple[str, ...], vs: tuple[str, ...]) -> list[tuple[str, str]]
 
 
 def _row(step: Any, at: int, digits: int | None) -> list[Any]:
-    numbers = [number_text(getattr(step, name)[at], digits) for name in FIELDS[:3]]
-    return [*numbers, Status(int(step.status[at]))]
+    return [*(number_text(getattr(step, name)[at], digits) for name in FIELDS[:3]), Status(int(step.status[at]))]
 
 
 def _certified(step: Any, at: int) -> dict[str, Any]:
     """Values and radii of what is proved, or null and why not."""
     found = step.certified[at]
-    if found is None:
-        return {"certified": None, "note": step.notes.get(at, "")}
-    return {"certified": found.as_dict()}
+    return {"certified": None, "note": step.notes.get(at, "")} if found is None else {"certified": found.as_dict()}
 
 
 def _told(states: list[tuple[str, str]], rows: list[list[Any]]) -> list[dict[str, Any]]:

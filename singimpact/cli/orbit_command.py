@@ -37,10 +37,8 @@ def command(
     orbit = oscillator.orbit(tau, v, impacts=impacts, horizon=horizon, wall=wall)
     if output is not None and not as_json and Path(output).suffix.lower() in PICTURES:
         draw(orbit, output)
-    elif as_json:
-        emit(as_json_text({"model": oscillator.to_dict(), **_as_listed(orbit)}), output)
     else:
-        emit(_table(orbit), output)
+        emit(as_json_text({"model": oscillator.to_dict(), **_as_listed(orbit)}) if as_json else _table(orbit), output)
 
 
 def check_ending(output: str | None, as_json: bool) -> None:

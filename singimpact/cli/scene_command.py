@@ -22,8 +22,7 @@ def command(file: str, output: str, as_json: bool) -> None:
     from singimpact.scenes.scene import DPI, Scene
 
     scene = Scene.read(file)
-    axes = scene.draw()
-    save(axes.figure, output, dpi=DPI)
+    save(scene.draw().figure, output, dpi=DPI)
     report = {"output": str(Path(output)), **scene.report()}
     click.echo(as_json_text(report) if as_json else _told(report))
 

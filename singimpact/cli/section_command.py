@@ -31,5 +31,4 @@ def command(
     elif as_json:
         emit(as_json_text({"model": osc.to_dict(), "at": at, **section.as_dict()}), output)
     else:
-        rows = [list(map(str, row.values())) for row in section.rows()]
-        emit(columns(list(section.table()), rows), output)
+        emit(columns(list(section.table()), [list(map(str, row.values())) for row in section.rows()]), output)

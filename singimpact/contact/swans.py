@@ -259,8 +259,7 @@ def _clearances(
 
 def _named_place(shifted: Expression, piece: Zero) -> Expression:
     """The zero on a piece: a rational where it is a short one exactly, a quotient where f is linear, else a root."""
-    middle = refined(shifted, "x", piece, 128).mid()
-    short = Fraction(float(middle)).limit_denominator(SHORT)
+    short = Fraction(float(refined(shifted, "x", piece, 128).mid())).limit_denominator(SHORT)
     if piece.low <= short <= piece.high and _exact(shifted, {"x": Number(short)}) == 0:
         return Number(short)
     slope = derivative(shifted, "x")

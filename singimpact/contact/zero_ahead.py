@@ -31,6 +31,7 @@ from singimpact.algebra.rings import Symbolic
 from singimpact.algebra.taylor import NotSmooth
 from singimpact.contact.contact import acceleration
 from singimpact.contact.points import window
+from singimpact.handed_on import sympy
 from singimpact.inputs import InputError
 from singimpact.oscillator.model import Oscillator
 
@@ -272,15 +273,11 @@ class _WithRoots(Symbolic):
         self.letters: dict[Root, Any] = {}
 
     def root(self, tree: Root) -> Any:
-        import sympy
-
         return self.letters.setdefault(tree, sympy.Dummy(f"root{len(self.letters)}", real=True))
 
 
 def _is_zero(tree: Expression) -> bool:
     """Whether a constant is 0, or is one of its roots put into that root's own equation."""
-    import sympy
-
     ring = _WithRoots()
     value = sympy.expand(evaluate(tree, {}, ring))
     if value == 0:

@@ -231,8 +231,7 @@ def nearby_orbits(model: Oscillator, tau: Array, v: Array, n: Array, k: Array, f
         attracts = (np.abs(area) <= size**2) & (np.abs(trace) * size <= size**2 + area)
         closed = away < NEARBY.closed
         attracting[left[closed]] = attracts[closed]
-        moved = _newton(residual, slopes)
-        aim = states[left] + moved
+        aim = states[left] + _newton(residual, slopes)
         there = np.abs((aim - starts[left]) / scale).max(axis=1, initial=0.0) < NEARBY.near
         going = ~closed & there & ((aim[:, 1] < 0) == (starts[left, 1] < 0))
         left = left[going]

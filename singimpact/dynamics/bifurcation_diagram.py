@@ -202,9 +202,8 @@ def _result(
 def _periods(model: Oscillator, over: str, values: Array) -> Array:
     """The period at each value; only parameters that occur beside t change it."""
     if not any(over in names_in(tree) for tree in moving_in_time(model.f, model.g).values()):
-        return np.full(values.size, np.nan if model.period is None else as_float(model.period))
-    moved = [model.replace(**{over: value}).period for value in values.tolist()]
-    return np.array([np.nan if period is None else as_float(period) for period in moved])
+        return np.full(values.size, as_float(model.period))
+    return np.array([as_float(model.replace(**{over: value}).period) for value in values.tolist()])
 
 
 def settled(
@@ -256,9 +255,7 @@ def _ending(flown_orbit: Orbit) -> Row | None:
             row = free_fates(flown_orbit.oscillator, height, flown_orbit.speeds[-1:])[0]
             if np.isfinite(row[0]) and row[0] not in (AWAY, STUCK):
                 return tuple(row.tolist())
-        if last == "unresolved":
-            return (STUCK, 0.0, 0.0)
-        return (GONE if np.isinf(flown_orbit.end) else AWAY, 0.0, 0.0)
+        return (STUCK if last == "unresolved" else GONE if np.isinf(flown_orbit.end) else AWAY, 0.0, 0.0)
     if last == "sticking" and not np.isfinite(flown_orbit.phases[-1][2]):
         return (CHATTER, -1.0 - (_wall(flown_orbit) or 0), 0.0)
     shown = np.isin(flown_orbit.kind, ("impact", "graze", "complete"))

@@ -25,7 +25,7 @@ from singimpact.flights.compiled_model import compiled_model
 from singimpact.flights.derivative import derivative
 from singimpact.flights.impact_map import checked_digits, impact_map
 from singimpact.flights.kernels.chatter import CLOSE, COMPLETED, EXHAUSTED, LIFTED, NO_ROOM, REPEATS, TOO_WIDE
-from singimpact.flights.orbits import Segment, orbit_segment
+from singimpact.flights.orbits import orbit_segment
 from singimpact.flights.states import States
 from singimpact.flights.walls import at_walls
 from singimpact.inputs import whole
@@ -137,8 +137,7 @@ def chatter_limit(
     0.95935923442208 complete True
     """
     if wall is not None:
-        fly = partial(chatter_limit, digits=digits, impacts=impacts)
-        return at_walls(fly, osc, wall, (tau, v))  # type: ignore[no-any-return]
+        return at_walls(partial(chatter_limit, digits=digits, impacts=impacts), osc, wall, (tau, v))  # type: ignore[no-any-return]
     states, most = (
         States.of(osc, tau, v, digits if isinstance(digits, int) else 15),
         whole("impacts", impacts, 1, 10**7),
@@ -219,9 +218,7 @@ def _in_doubles(osc: Oscillator, states: States, most: int) -> ChatterLimit:
 
 def _enclosed(osc: Oscillator, states: States, digits: int) -> ChatterLimit | None:
     """The limit in balls, where the model and the state allow it."""
-    if not enclosed.enclosable(osc):
-        return None
-    enclosure = enclosed.chatter_limit(osc, states, digits)
+    enclosure = enclosed.chatter_limit(osc, states, digits) if enclosed.enclosable(osc) else None
     if enclosure is None:
         return None
     status = Status.lifts_off if enclosure.lost else Status.complete
@@ -406,7 +403,8 @@ class _Flown:
     def _fly(self, count: int, near: float) -> Status:
         """Fly further impacts; the sequence is cut after the first impact with a_c >= 0."""
         segment = orbit_segment(self.osc, self.times[-1], self.speeds[-1], min(count, 4096, self._left()), near)
-        length, wall = self._kept(segment), self.wall
+        lifted = np.flatnonzero(segment.acceleration[1:] >= 0)
+        length, wall = int(lifted[0]) + 1 if lifted.size else segment.tau.size, self.wall
         if self.law.has_slopes:
             r, slopes = self.law.r, segment.slopes.T[:length].tolist()
             if len(self.laws) == 1:
@@ -433,10 +431,6 @@ class _Flown:
         # times lose digits in their size
         close = np.abs(apart - np.round(apart)) <= CLOSE + EPSILON * abs(turns[-1])
         return bool((close & (np.abs(speeds[:-1] - speeds[-1]) <= CLOSE * speeds[-1])).any())
-
-    def _kept(self, found: Segment) -> int:
-        lifted = np.flatnonzero(found.acceleration[1:] >= 0)
-        return int(lifted[0]) + 1 if lifted.size else int(found.tau.size)
 
     def rounding(self, end: float, status: Status) -> float:
         """The rounding errors of all impacts, carried to the end by D G: an adjoint sweep from the last impact."""
@@ -475,8 +469,7 @@ def _precise(osc: Oscillator, states: States, rough: ChatterLimit, digits: int) 
                 tau, v, count = mp.convert(step.tau), mp.convert(step.v), count + 1
                 osc = osc.mirrored if step.wall else osc
             if rough.status == Status.lifts_off:
-                limit = _rounded(tau, count, small * abs(tau), Status.lifts_off, digits)
-                return replace(limit, wall=rough.wall)
+                return replace(_rounded(tau, count, small * abs(tau), Status.lifts_off, digits), wall=rough.wall)
             r = as_mpf(osc.slope_at_rest(), mp)
             rho = {k: value for k, value in series_of_rho(osc, ENDING.many, ring).items() if k > 1}
             contact = Contact.of(osc, tau, 0, ENDING.many, ring)

@@ -276,8 +276,7 @@ def remaining(flow: AnalyticFlow, tau: Any, v: Any) -> Any | None:
 
     The bounds hold on a window; they close when what is left, by these bounds, fits into the window.
     """
-    lost = 1 - flow.r
-    window = (ORBITS.wide * 2 * v / (abs(flow.acceleration(tau)) * lost)).upper()
+    window = (ORBITS.wide * 2 * v / (abs(flow.acceleration(tau)) * (1 - flow.r))).upper()
     # |x-dot| <= 2v and 0 <= x - c <= v window on the way, which q < 2 below confirms
     low, high = flow.pressing(tau, window, v)
     if not low > 0:
@@ -399,8 +398,7 @@ def _secant(
         change = balls.rational(other - v) * beyond / (beyond - value)
         if not change.is_finite() or change.rad() > balls.rational(small):
             return None
-        closer = as_rational(balls.rational(other) - change)
-        v, value, other = other, beyond, closer
+        v, value, other = other, beyond, as_rational(balls.rational(other) - change)
         if abs(other - v) < small:
             break
     return other

@@ -92,8 +92,7 @@ def _moved(model: Oscillator, state: Array, times: Array) -> Array:
     z, u = state.T
     with np.errstate(all="ignore"):
         if compiled.linear:
-            columns = np.repeat(u, m), times.ravel(), np.repeat(z, m)
-            flat = compiled.places(np.zeros(n * m), *columns)
+            flat = compiled.places(np.zeros(n * m), np.repeat(u, m), times.ravel(), np.repeat(z, m))
         else:
             flat = compiled.follow_all(np.zeros(n), u.copy(), np.full(n, m), np.ascontiguousarray(times.ravel()), z)
     return np.asarray(flat).reshape(n, m, 2)

@@ -126,8 +126,7 @@ class Carried:
         """Midpoints put in until chords are short or straight enough for the resolution, or their ends close in s."""
         least = closest(self.window) * np.ptp(s)
         for _ in range(60):
-            wanted = self._too_coarse(points) & (np.abs(np.diff(s)) > least)
-            at = np.flatnonzero(wanted)
+            at = np.flatnonzero(self._too_coarse(points) & (np.abs(np.diff(s)) > least))
             if not at.size:
                 return s, points, False
             if len(s) + at.size > self.most:

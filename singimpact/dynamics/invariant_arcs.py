@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.expressions import names_in
-from singimpact.algebra.numbers import Array, as_float
+from singimpact.algebra.numbers import Array, as_float, constant
 from singimpact.contact.points import tangency_points
 from singimpact.dynamics.growth import SETTINGS as GROWTH, Carried, Piece, adds, held
 from singimpact.flights.impact_map import first_hit, impact_map
@@ -141,8 +141,6 @@ def _curved(model: Oscillator, tau: Any) -> str:
 
 def _foot(model: Oscillator, tau: Any, at: str | None) -> float:
     if tau is not None:
-        from singimpact.algebra.numbers import constant
-
         return as_float(constant("tau", tau))
     kind = "gamma" if at == "tangency" else "degenerate"
     return next(point.tau for point in tangency_points(model) if point.kind == kind)
@@ -156,8 +154,7 @@ def model_step(model: Oscillator, points: Array, horizon: float | None = None) -
     images, regular = np.full(points.shape, np.nan), np.isfinite(points).all(axis=1) & (points[:, 1] >= 0)
     at, v_at = points[regular].T
     step = impact_map(model, at, v_at, tolerance=SETTINGS.tolerance, horizon=horizon)
-    good = at_lower_wall(step)
-    images[regular] = np.where(good[:, None], np.stack([step.tau, step.v], axis=1), np.nan)
+    images[regular] = np.where(at_lower_wall(step)[:, None], np.stack([step.tau, step.v], axis=1), np.nan)
     return images
 
 

@@ -75,8 +75,7 @@ def next_lift_offs(osc: Oscillator, times: Array) -> tuple[Array, Array]:
     begun, phases = times - turns * period, np.full(times.size, np.nan)
     left = np.argsort(begun)
     while left.size:
-        start = float(begun[left[0]])
-        time = release(osc, start)
+        time = release(osc, float(begun[left[0]]))
         # between a rest and its lift-off a_c presses throughout
         shared = left[begun[left] <= time] if np.isfinite(time) else left[:1]
         passed = np.floor(time / period) if np.isfinite(time) else 0.0

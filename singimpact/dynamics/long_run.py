@@ -88,8 +88,7 @@ def futures(
         begin = _lifted(model, phase)
         first = orbit(model, begin, 0, impacts=1)
         if first.kind.tolist() != ["start", "impact"]:
-            away = GONE if np.isinf(first.end) else AWAY
-            code = away if first.phases[-1][0] == "no_return" else OTHER
+            code = (GONE if np.isinf(first.end) else AWAY) if first.phases[-1][0] == "no_return" else OTHER
             rows.append(Future((code, 0.0, 0.0), np.nan))
             continue
         row = tuple(classify(first.tau[1:], first.speeds[1:] * (-1 if wall else 1))[0].tolist())

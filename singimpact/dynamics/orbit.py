@@ -228,8 +228,7 @@ def orbit(osc: Oscillator, tau: Any, v: Any, impacts: int = 200, *, horizon: Any
     codes = wall_codes(osc, wall)
     if codes.shape:
         raise refuse("wall", wall, "one wall: an orbit starts from one state")
-    start = float(states.tau[0]), float(states.v[0])
-    run = _Run(osc, start, horizon, most, int(codes))
+    run = _Run(osc, (float(states.tau[0]), float(states.v[0])), horizon, most, int(codes))
     if isinstance(states.turns, float):
         run.given = states.given(0)
         return run.orbit()
@@ -298,11 +297,9 @@ class _Run:
         if self.v > 0 and self.horizon is None and not self.osc.plastic:
             if self.short and self._summed():
                 return
-            left = self.most - self.flown
-            if self.short:
-                segment = orbit_segment(self.osc, self.tau, self.v, min(left, self.more), wall=self.wall)
-            else:
-                segment = orbit_segment(self.osc, self.tau, self.v, min(left, SETTINGS.block), ENDING.near, self.wall)
+            most, near = (self.more, 0.0) if self.short else (SETTINGS.block, ENDING.near)
+            count = min(self.most - self.flown, most)
+            segment = orbit_segment(self.osc, self.tau, self.v, count, near, self.wall)
             self._impacts(segment.tau, segment.v, segment.wall)
             self.short = not segment.status and (self.short or segment.short)
             if not segment.status or self.flown == self.most:
@@ -310,8 +307,7 @@ class _Run:
         self._mapped()
 
     def _impacts(self, times: Array, velocities: Array, walls: Array) -> None:
-        starts = [self.tau, *times.tolist()]
-        self.phases += [("flight", begin, end) for begin, end in pairwise(starts)]
+        self.phases += [("flight", begin, end) for begin, end in pairwise([self.tau, *times.tolist()])]
         if times.size:
             self._event(times, velocities, "impact", walls)
             self.flown += times.size
@@ -341,9 +337,9 @@ class _Run:
             return False
         time, error = left
         resolution = EPSILON * max(abs(self.tau), self.tau - self.begun)
-        below = True
-        if self.osc.upper is not None:
-            below = bool(stays_below(self.here, self.v, float(acceleration(self.here, np.array([self.tau]))[0])))
+        below = self.osc.upper is None or bool(
+            stays_below(self.here, self.v, float(acceleration(self.here, np.array([self.tau]))[0]))
+        )
         if not (error <= resolution and below):
             self.more = impacts_until(self.here, error, resolution) if below else 1
             return False
@@ -403,11 +399,9 @@ class _Run:
         times, velocities, kinds, walls = (
             np.concatenate(blocks[block:]) for blocks in (self.times, self.velocities, self.kinds, self.walls)
         )
-        flights = np.count_nonzero(kinds != "release")
-        again = -(-left // flights)
+        again = -(-left // np.count_nonzero(kinds != "release"))
         shifts = time * np.arange(1, again + 1)
-        counted = np.cumsum(np.tile(kinds != "release", again))
-        count = int(np.searchsorted(counted, left, side="right"))
+        count = int(np.searchsorted(np.cumsum(np.tile(kinds != "release", again)), left, side="right"))
         phases = ([kind for kind, *_ in self.phases[-times.size :]] * again)[:count]
         ends = np.add.outer(shifts, times).ravel()[:count]
         self.phases += zip(phases, [self.tau, *ends[:-1].tolist()], ends.tolist(), strict=True)

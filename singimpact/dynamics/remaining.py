@@ -158,9 +158,7 @@ def chatter_completes(osc: Oscillator) -> bool:
     [True, False, False, True]
     """
     loss = loss_at_rest(osc)
-    if compare(loss.r, 1) < 0:
-        return True
-    return loss.q < 1 and compare(loss.C, 0) > 0
+    return compare(loss.r, 1) < 0 or (loss.q < 1 and compare(loss.C, 0) > 0)
 
 
 def power_of_gamma(osc: Oscillator, order: int) -> float:

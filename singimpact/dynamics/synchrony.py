@@ -146,8 +146,7 @@ def meets(study: Study, tau: float, v: float) -> bool:
     """
     if growth(study.model, np.array([tau]), np.array([v]), study.fast)[0] >= 0:
         return False
-    pair = np.array([[RESPONSE, tau, v], [RESPONSE, tau, v * (1 + SETTINGS.different)]])
-    rows = confirmed(study, pair)
+    rows = confirmed(study, np.array([[RESPONSE, tau, v], [RESPONSE, tau, v * (1 + SETTINGS.different)]]))
     return bool(rows[0, 0] == RESPONSE and (rows[0] == rows[1]).all())
 
 

@@ -76,21 +76,24 @@ class SwanConfiguration(Result):
     @cached_property
     def projected(self) -> dict[str, Point]:
         """A', B', C', D', E': the images (tau, v) under p."""
-        return {name: (tau, self._launch(tau, t)) for name, (tau, t) in self.points.items()}
+        # v_c: those on Z start at rest
+        return {
+            name: (tau, 0.0 if self._is_one_of("ABCE", tau, t) else self._speed(tau + t, -t))
+            for name, (tau, t) in self.points.items()
+        }
 
     @cached_property
     def reset(self) -> dict[str, Point]:
         """A'', B'', C'', D'', E'': the images (tau, x') under phi."""
-        return {name: (tau + t, self._impact(tau, t)) for name, (tau, t) in self.points.items()}
+        # x': those on H end at rest
+        return {
+            name: (tau + t, 0.0 if self._is_one_of("ABDE", tau, t) else self._speed(tau, t))
+            for name, (tau, t) in self.points.items()
+        }
 
-    def _launch(self, tau: float, t: float) -> float:
-        """v_c at a named point: those on Z start at rest, those on H end at rest."""
-        on_zero_set = any(np.isclose([tau, t], self.points[name], rtol=0, atol=1e-12).all() for name in "ABCE")
-        return 0.0 if on_zero_set else self._speed(tau + t, -t)
-
-    def _impact(self, tau: float, t: float) -> float:
-        on_horizon = any(np.isclose([tau, t], self.points[name], rtol=0, atol=1e-12).all() for name in "ABDE")
-        return 0.0 if on_horizon else self._speed(tau, t)
+    def _is_one_of(self, names: str, tau: float, t: float) -> bool:
+        """Whether a point of V' is one of the named ones."""
+        return any(np.isclose([tau, t], self.points[name], rtol=0, atol=1e-12).all() for name in names)
 
     def _speed(self, tau: float, t: float) -> float:
         """x' after t of the flight from rest at tau."""
@@ -105,8 +108,7 @@ class SwanConfiguration(Result):
     @cached_property
     def X(self) -> float:
         """tau_3: where chatter from A comes to rest; W^s(X) contains A (negative swan)."""
-        limit = chatter_limit(self.model, *self.Q)
-        return float(limit.tau)
+        return float(chatter_limit(self.model, *self.Q).tau)
 
     @cached_property
     def gamma_end(self) -> float:

@@ -93,17 +93,17 @@ class Family(ABC):
         self.fixed = {name: tree for name, tree in osc.parameters.items() if name not in over}
         self.start = {name: value_of(osc, name) for name in over}
         self.fastest = fastest_rate(osc)
-        self._period = self._tree(period_over(osc, over))
-        self._rho = [self._tree(tree) for tree in _rebound(osc, over)]
+        period = period_over(osc, over)
+        self._period = None if period is None else self._tree(period)
+        law = rho_of(Name(RESTITUTION) if RESTITUTION in over else osc.restitution)
+        self._rho = [self._tree(tree) for tree in (law, derivative(law, "v"))]
         # flights of one orbit have the same numbers: those of the last call are remembered
         self._last_period: tuple[Values, Number] | None = None
 
     # ---- numbers
 
-    def _tree(self, tree: Expression | None) -> tuple[Expression, tuple[Expression, ...]] | None:
+    def _tree(self, tree: Expression) -> tuple[Expression, tuple[Expression, ...]]:
         """A tree in which the numbers that move are letters, and its derivatives by them."""
-        if tree is None:
-            return None
         kept = substitute(tree, self.fixed)
         return kept, tuple(derivative(kept, name) for name in self.over)
 
@@ -126,8 +126,6 @@ class Family(ABC):
 
     def rebound(self, velocity: float, values: Values) -> tuple[float, float, tuple[float, ...]]:
         """rho at x' before an impact, its derivative, and its derivatives by the numbers."""
-        assert self._rho[0] is not None
-        assert self._rho[1] is not None
         given = {**values, "v": velocity}
         tree, slopes = self._rho[0]
         return (_float(tree, given), _float(self._rho[1][0], given), tuple(_float(each, given) for each in slopes))
@@ -153,8 +151,7 @@ class Family(ABC):
     def samples(self, values: Values, time: float) -> int:
         """The number of samples that show the shape of a flight; a forcing that has become faster is followed."""
         period = self.period(values).value
-        rate = max(self.fastest, 4 * pi / period if period > 0 else 0.0)
-        turns = min(abs(time) * rate / (2 * pi), SETTINGS.most)
+        turns = min(abs(time) * max(self.fastest, 4 * pi / period if period > 0 else 0.0) / (2 * pi), SETTINGS.most)
         return int(min(max(SETTINGS.samples * turns, SETTINGS.least), SETTINGS.most))
 
 
@@ -191,13 +188,10 @@ class LinearFamily(Family):
         super().__init__(osc, over)
         clearance: Any = Name(CLEARANCE) if CLEARANCE in over else osc.clearance
         steady = add(form.constant, negate(multiply(form.stiffness, clearance)))
-        trees = [form.damping, form.stiffness, steady]
-        for wave in form.harmonics:
-            trees += [wave.rate, wave.phase, wave.cosine, wave.sine]
-        self._trees = [self._tree(tree) for tree in trees]
+        waves = [part for wave in form.harmonics for part in (wave.rate, wave.phase, wave.cosine, wave.sine)]
+        self._trees = [self._tree(tree) for tree in (form.damping, form.stiffness, steady, *waves)]
         self._known = [
-            self._number(entry, {}) if entry is not None and not _moves(entry[0], over) else None
-            for entry in self._trees
+            self._number(entry, {}) if names_in(entry[0]).isdisjoint(over) else None for entry in self._trees
         ]
         self.waves = len(form.harmonics)
         self._last: tuple[Values, list[Number]] | None = None
@@ -208,8 +202,7 @@ class LinearFamily(Family):
         if last is not None and last[0] == values:
             return last[1]
         numbers = [
-            constant or self._number(trees, values)  # type: ignore[arg-type]
-            for constant, trees in zip(self._known, self._trees, strict=True)
+            constant or self._number(trees, values) for constant, trees in zip(self._known, self._trees, strict=True)
         ]
         self._last = dict(values), numbers
         return numbers
@@ -254,11 +247,8 @@ class LinearFamily(Family):
         return np.asarray(states[:count, :2])
 
     def _start(self, p: list[Number], tau: float, v: float) -> Array:
-        state = [0.0, v, 1.0]
-        for j in range(self.waves):
-            angle = p[3 + 4 * j].value * tau + p[4 + 4 * j].value
-            state += [cos(angle), sin(angle)]
-        return np.array(state)
+        angles = [p[3 + 4 * j].value * tau + p[4 + 4 * j].value for j in range(self.waves)]
+        return np.array([0.0, v, 1.0, *(part for angle in angles for part in (cos(angle), sin(angle)))])
 
     def _matrix(self, p: list[float], flow: bool = True) -> Array:
         """M of these numbers; linear in them but for the 1 of x - c, which a derivative has not."""
@@ -375,16 +365,6 @@ def push_by(osc: Oscillator, name: str) -> Expression:
     if name == CLEARANCE:
         return negate(derivative(osc.f, "x"))
     return subtract(derivative(osc.g, name), derivative(osc.f, name))
-
-
-def _rebound(osc: Oscillator, over: Sequence[str]) -> tuple[Expression, Expression]:
-    """rho and its derivative by the velocity."""
-    law = rho_of(Name(RESTITUTION) if RESTITUTION in over else osc.restitution)
-    return law, derivative(law, "v")
-
-
-def _moves(tree: Expression, over: Sequence[str]) -> bool:
-    return not names_in(tree).isdisjoint(over)
 
 
 def _float(tree: Expression, values: Mapping[str, Any]) -> float:

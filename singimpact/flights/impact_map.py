@@ -78,8 +78,7 @@ def first_hit(
     if type(tau) is float and type(v) is float and digits is tolerance is horizon is steps is None and out is None:
         fields, flown = plain_fields(compiled_model(osc), tau, v)
         if fields is not None:
-            later = fields.pop("later")
-            return Flight.made(later, **fields)
+            return Flight.made(fields.pop("later"), **fields)
     if many(tau, v, out, digits):
         fly = partial(first_hit, osc, tolerance=tolerance, horizon=horizon, steps=steps)
         return in_blocks(fly, tau, v, out)  # type: ignore[no-any-return]

@@ -79,9 +79,7 @@ def threads_now() -> int:
 @lru_cache(maxsize=1)
 def _processors() -> int:
     """Processors that this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def shared_out(work: Callable[[slice], None], begin: int, end: int, least: int) -> None:

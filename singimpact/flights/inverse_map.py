@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.expressions import Name, multiply, names_in, number, substitute
+from singimpact.algebra.expressions import Name, multiply, names_in, number, power, substitute
 from singimpact.algebra.numbers import Array, as_float, as_mpf
 from singimpact.algebra.precision import digits_at, for_user
 from singimpact.flights.blocks import in_blocks, many
@@ -83,8 +83,7 @@ def inverse_map(
 
 
 def _in_doubles(osc: Oscillator, states: States, horizon: Any) -> Step:
-    known = not names_in(osc.restitution)
-    speeds = states.v / as_float(osc.restitution) if known else speed_before(osc, states.v)
+    speeds = states.v / as_float(osc.restitution) if not names_in(osc.restitution) else speed_before(osc, states.v)
     dead = np.isnan(speeds)
     times = -states.tau if states.v.all() else _turned(states)
     hit = first_hit(backwards(osc), times, np.where(dead, 0.0, speeds), horizon=horizon)
@@ -105,18 +104,13 @@ def _speeds(osc: Oscillator, states: States, digits: int) -> Array:
     """U with rho(-U) = v, as an exact number where rho is -r v; None where no velocity rebounds to v."""
     found = np.empty(states.v.size, dtype=object)
     if not names_in(osc.restitution):
-        found[:] = [multiply(states.exact_v(index), _inverse(osc)) for index in range(found.size)]
+        inverse = power(osc.restitution, number(-1))
+        found[:] = [multiply(states.exact_v(index), inverse) for index in range(found.size)]
         return found
     doubles = speed_before(osc, states.v)
     for index in np.flatnonzero(~np.isnan(doubles)).tolist():
         found[index] = sharpened(osc, states.exact_v(index), float(doubles[index]), digits)
     return found
-
-
-def _inverse(osc: Oscillator) -> Any:
-    from singimpact.algebra.expressions import power
-
-    return power(osc.restitution, number(-1))
 
 
 def _step(states: States, hit: Any, fields: dict[str, Any], dead: Array) -> Step:

@@ -140,9 +140,8 @@ class Machine:
         from singimpact.codegen import object_code
         from singimpact.flights.compilers import KernelCompiler, text_of_model
 
-        if self.is_own:
-            return object_code.emitted(text_of_model(self.emitted), name)
-        return object_code.emitted(KernelCompiler(self.emitted.steps).text(name), name)
+        text = text_of_model(self.emitted) if self.is_own else KernelCompiler(self.emitted.steps).text(name)
+        return object_code.emitted(text, name)
 
     @property
     def _reason(self) -> str:

@@ -33,10 +33,8 @@ def constants_of(osc: Oscillator, linear: bool = True) -> tuple[Expression, ...]
     damping, stiffness = as_float(form.damping), as_float(form.stiffness)
     # the largest rate is only a scale, so a double of it is enough
     scale = max(abs(damping), abs(stiffness) ** 0.5, *(abs(as_float(wave.rate)) for wave in form.harmonics), 0.0)
-    numbers = [osc.clearance, form.damping, form.stiffness, at_rest(form, osc.clearance), Number(Fraction(scale))]
-    for wave in form.harmonics:
-        numbers += [wave.rate, wave.cosine, wave.sine]
-    return tuple(numbers)
+    numbers = osc.clearance, form.damping, form.stiffness, at_rest(form, osc.clearance), Number(Fraction(scale))
+    return (*numbers, *(part for wave in form.harmonics for part in (wave.rate, wave.cosine, wave.sine)))
 
 
 @lru_cache(maxsize=256)
@@ -88,16 +86,13 @@ def _in_range(trees: Iterable[Expression]) -> Array:
 
 def phases_of(osc: Oscillator) -> tuple[Array, Array]:
     """The phases of the waves of a linear model as doubles, and the parts below them."""
-    form = linear_form(osc)
-    assert form is not None
-    phases = [wave.phase for wave in form.harmonics]
+    phases = [wave.phase for wave in linear_waves(osc)]
     return np.array([as_float(tree) for tree in phases]), np.array([_below(tree) for tree in phases])
 
 
 def _below(tree: Expression) -> float:
     high = as_float(tree)
-    exact = rational_near(tree, 256)
-    return float(exact - Fraction(high)) if np.isfinite(high) else 0.0
+    return float(rational_near(tree, 256) - Fraction(high)) if np.isfinite(high) else 0.0
 
 
 def linear_waves(osc: Oscillator) -> tuple[Any, ...]:

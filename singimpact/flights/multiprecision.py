@@ -24,6 +24,7 @@ from singimpact.flights.limits import LIMITS, degree_for
 from singimpact.flights.model_numbers import constants_of, linear_numbers, linear_waves, recurrence_of
 from singimpact.flights.no_return.polynomial import never_returns, never_turns
 from singimpact.flights.states import States
+from singimpact.handed_on import flint
 from singimpact.oscillator.linear import LinearForm, linear_form
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import Zero, acceleration
@@ -34,8 +35,7 @@ Outcome = tuple[int, tuple[Any, Any, Any, Any]]
 
 def found(osc: Oscillator, states: States, index: int, digits: int, limit: float, budget: int) -> Outcome:
     """One flight to `digits` digits where balls prove no hit: by two precisions that agree."""
-    touch = _closing(osc, states, index, digits, limit)
-    return touch or agreed(osc, states, index, digits, limit, budget)
+    return _closing(osc, states, index, digits, limit) or agreed(osc, states, index, digits, limit, budget)
 
 
 def _closing(osc: Oscillator, states: States, index: int, digits: int, limit: float) -> Outcome | None:
@@ -195,8 +195,6 @@ def _over_balls(flow: str) -> dict[str, Any]:
 
 def _in_balls(osc: Oscillator, bits: int, mp: Any) -> Callable[..., None]:
     """`coefficients` of numbers of mpmath, computed in balls of 32 bits more, which takes a quarter of the time."""
-    import flint
-
     balls, flow = Balls(bits), recurrence_of(osc)
     call, p = _over_balls(flow.source)["coefficients"], [balls.evaluate(tree, {}) for tree in constants_of(osc)]
 
@@ -219,9 +217,7 @@ def centre_of(ball: Any, mp: Any) -> Any:
 
     if isinstance(ball, float | int):  # the time has series of plain numbers
         return mp.mpf(ball)
-    if not ball.is_finite():
-        return mp.nan
-    return mp.make_mpf(from_man_exp(*map(int, ball.mid().man_exp())))
+    return mp.make_mpf(from_man_exp(*map(int, ball.mid().man_exp()))) if ball.is_finite() else mp.nan
 
 
 def forcing_phases(osc: Oscillator, states: States, index: int, mp: Any) -> list[Any]:

@@ -115,8 +115,7 @@ def speed_before(osc: Oscillator, v: Array) -> Array:
     miss = np.abs(np.where(np.isfinite(value), value - v, np.inf))
     best = np.argmin(miss, axis=0)[None]
     close = (np.take_along_axis(miss, best, 0) <= np.take_along_axis(allowed, best, 0))[0]
-    speed = np.where(v == 0, 0.0, np.where(close, np.take_along_axis(ends, best, 0)[0], np.nan))
-    return _decided(osc, v, speed)
+    return _decided(osc, v, np.where(v == 0, 0.0, np.where(close, np.take_along_axis(ends, best, 0)[0], np.nan)))
 
 
 def _decided(osc: Oscillator, v: Array, speed: Array) -> Array:

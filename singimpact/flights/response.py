@@ -113,8 +113,7 @@ def _acceleration(osc: Oscillator, tau: Array, time: Array, velocity: Array) -> 
     with np.errstate(all="ignore"):
         state = {"x": _places(osc, velocity), "xdot": velocity, "t": start + time}
         forcing = evaluate(osc.forcing(), state, DOUBLES) + 0 * velocity
-        force = evaluate(osc.force(), state, DOUBLES)
-        difference = np.asarray(forcing - force)
+        difference = np.asarray(forcing - evaluate(osc.force(), state, DOUBLES))
         # where g and f nearly cancel, doubles keep too few digits of x''
         for index in np.flatnonzero(np.abs(difference) < LIMITS.cancelled * np.abs(forcing)):
             difference[index] = _cancelled(osc, start[index] + time[index], velocity[index])

@@ -174,9 +174,7 @@ def require_room(*numbers: tuple[str, Any]) -> None:
     >>> require_room(("tau", np.zeros((1000, 1))), ("v", 0.1))
     """
     arrays = [value for _, value in numbers if isinstance(value, np.ndarray)]
-    if not arrays:
-        return
-    if math.prod(array.size for array in arrays) < FEW:
+    if not arrays or math.prod(array.size for array in arrays) < FEW:
         return
     names = " and ".join(filter(None, (", ".join(name for name, _ in numbers[:-1]), numbers[-1][0])))
     try:

@@ -25,6 +25,7 @@ from singimpact.flights.no_return.polynomial import never_returns, never_turns
 from singimpact.flights.response import response, usual_errors
 from singimpact.flights.results import JUDGED, Flight
 from singimpact.flights.states import States
+from singimpact.handed_on import flint
 from singimpact.oscillator.linear import at_rest, linear_form
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.period import reduced
@@ -96,8 +97,7 @@ class Judge:
     def __call__(self, _name: str) -> dict[str, Any]:
         rows = np.full((4, self.tau.size), np.nan)
         chosen = np.flatnonzero(self.hits)
-        judged = self.model.judged(self.tau[chosen], self.v[chosen], self.removed[chosen])
-        rows[:, chosen] = judged[2:6]
+        rows[:, chosen] = self.model.judged(self.tau[chosen], self.v[chosen], self.removed[chosen])[2:6]
         rows[2:] = LIMITS.margin * rows[2:] + EPSILON
         return dict(zip(JUDGED, rows, strict=True))
 
@@ -319,13 +319,13 @@ def notes_of(osc: Oscillator, states: States, fates: Fates) -> dict[int, str]:
     """A note for each undecided flight, with its cause."""
     notes = {}
     for index in np.flatnonzero(fates.lost).tolist():
-        tau = float(states.tau[index])
 
         def way(times: Array, at: int = index) -> Any:
             return path(osc, states.tau[at], states.v[at], times)
 
-        explanation = explained(osc, tau, fates.numbers[index], Cause(int(fates.cause[index])), way)
-        fates.cause[index], notes[index] = explanation
+        fates.cause[index], notes[index] = explained(
+            osc, float(states.tau[index]), fates.numbers[index], Cause(int(fates.cause[index])), way
+        )
     return notes
 
 
@@ -343,8 +343,6 @@ class LinearSystem(NamedTuple):
 @lru_cache(maxsize=64)
 def _system(osc: Oscillator, bits: int) -> LinearSystem:
     """The system of a linear model in balls of so many bits."""
-    import flint
-
     form, balls = linear_form(osc), Balls(bits)
     assert form is not None
     with balls_at(bits):
@@ -390,8 +388,6 @@ def _halley(system: LinearSystem, launch: tuple[Any, ...], time: Any, level: Any
     """Time and velocity next to a time at which x - c = level, one step of Halley's method away; None when no step is
     small.
     """
-    import flint
-
     tau, v, at_first = launch
     angles = [(rate * tau + phase).sin_cos() for rate, phase in system.waves]
     start = flint.arb_mat([[at_first], [v], [1], *([value] for sine, cosine in angles for value in (cosine, sine))])

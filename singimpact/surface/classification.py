@@ -198,8 +198,7 @@ def _folds(maps: str, curves: list[Curve]) -> Iterator[FoldLine]:
         if curve.closed:
             pairs = list(zip(cuts, cuts[1:] + cuts[:1], strict=True)) or [(0, len(curve) - 1)]
         else:
-            ends = [0, *cuts, len(curve) - 1]
-            pairs = list(pairwise(ends))
+            pairs = list(pairwise([0, *cuts, len(curve) - 1]))
         for pair in pairs:
             kinds = ["cusp" if i in cuts else "closed" if curve.closed else edges.get(i, "edge") for i in pair]
             start, end = ((float(curve.points[i, 0]), float(curve.points[i, 1])) for i in pair)

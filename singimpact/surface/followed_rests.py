@@ -108,8 +108,7 @@ class FollowedRests:
         return np.append(flights.acceleration(np.array([place[0], place[0] + place[1]])), height)
 
     def _turn(self, value: float) -> float:
-        period = self.family.at(value).period
-        return np.nan if period is None else as_float(period)
+        return as_float(self.family.at(value).period)
 
     def _grid(self, value: float) -> tuple[Array, Array, Array, Array]:
         """s, d, and (x - c, x') of flights from rest and of such launched a little faster, shape (s, d, 2)."""

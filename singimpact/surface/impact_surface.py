@@ -115,19 +115,15 @@ def _without_crowds(
     stays = np.ones(len(points), dtype=bool)
     for vertex in vertices:
         pair = np.array([vertex.after, vertex.after + 1])
-        near = pair[np.abs(points[pair] - vertex.point).max(axis=1) < CLOSE]
-        stays[near] = False
+        stays[pair[np.abs(points[pair] - vertex.point).max(axis=1) < CLOSE]] = False
     if not closed:
         stays[[0, -1]] = True
     shift = np.cumsum(~stays)
-    moved = [
-        _Named(vertex.after - int(shift[vertex.after]), vertex.point, vertex.velocity, vertex.name)
-        for vertex in vertices
-    ]
+    moved = [replace(vertex, after=max(vertex.after - int(shift[vertex.after]), 0)) for vertex in vertices]
     points, column = points[stays], column[stays]
     if closed and len(points) and not np.array_equal(points[0], points[-1]):
         points, column = np.vstack([points, points[:1]]), np.append(column, column[:1])
-    return points, column, [_Named(max(e.after, 0), e.point, e.velocity, e.name) for e in moved]
+    return points, column, moved
 
 
 def _tangencies(points: Array, zeros: Sequence[float]) -> list[_Named]:
@@ -183,8 +179,7 @@ def _rest(flights: RestFlights, vertex: Array) -> tuple[float, float] | None:
     for _ in range(20):
         one, at = np.array([tau]), np.array([t])
         height, velocity = flights.ends(one, at)
-        matrix = flights.rest_matrix(one, at, velocity)
-        move = np.linalg.solve(matrix, -np.array([height[0], velocity[0]]))
+        move = np.linalg.solve(flights.rest_matrix(one, at, velocity), -np.array([height[0], velocity[0]]))
         tau, t = tau + float(move[0]), t + float(move[1])
         if np.abs(move).max() <= SETTLED * 10 * (1 + abs(t)):
             return tau, t
@@ -321,12 +316,14 @@ class ImpactSurface:
     @cached_property
     def zero_set(self) -> list[Curve]:
         """Z: (tau, t) with v_c = 0, t != 0; `visible` where it is a first hit [s2-zero-set]."""
-        return [_curve("Z", line.points, SURFACE, line, partial(self._first_ahead, line)) for line in self.lines]
+        first = partial(self._are_first, model=self.model, sign=1)
+        return [_curve("Z", line.points, SURFACE, line, partial(first, line)) for line in self.lines]
 
     @cached_property
     def horizon(self) -> list[Curve]:
         """H = iota(Z): (tau, t) where the flight lands with velocity 0; `visible` where it does so first."""
-        return [_curve("H", _involved(line), SURFACE, line, partial(self._first_back, line)) for line in self.lines]
+        first = partial(self._are_first, model=backwards(self.model), sign=-1)
+        return [_curve("H", _involved(line), SURFACE, line, partial(first, line)) for line in self.lines]
 
     @cached_property
     def outline(self) -> list[Curve]:
@@ -361,12 +358,13 @@ class ImpactSurface:
     @cached_property
     def cusps(self) -> list[Cusp]:
         """The cusps of p and phi in the window."""
-        found = []
-        for line in self.lines:
-            at = [mark.index for mark in line.marks if mark.name == "cusp"]
-            places = [(float(line.points[i, 0]), float(line.points[i, 1])) for i in at]
-            found += [Cusp(tau, t, float(line.column[i])) for i, (tau, t) in zip(at, places, strict=True)]
-        return sorted(found, key=lambda cusp: (cusp.tau, cusp.t))
+        cusps = [
+            Cusp(*map(float, (*line.points[mark.index], line.column[mark.index])))
+            for line in self.lines
+            for mark in line.marks
+            if mark.name == "cusp"
+        ]
+        return sorted(cusps, key=lambda cusp: (cusp.tau, cusp.t))
 
     @cached_property
     def shadow(self) -> list[Curve]:
@@ -379,15 +377,12 @@ class ImpactSurface:
             found += [part for part in made.parts(curve.visible & np.isfinite(ahead)) if len(part) > 1]
         return found
 
-    def _first_ahead(self, line: NamedLine) -> Array:
-        """Whether t > 0 is the first hit of the flight from rest."""
-        tau, t = line.points.T
-        return _is_first(self._hits(self.model, tau, t > 0), t)
-
-    def _first_back(self, line: NamedLine) -> Array:
-        """Whether t < 0 is the first hit of the flight from rest run back, so that the graze is a first hit."""
-        tau, t = line.points.T
-        return _is_first(self._hits(backwards(self.model), -tau, t < 0), -t)
+    def _are_first(self, line: NamedLine, model: Oscillator, sign: int) -> Array:
+        """Whether t, of that sign, is the first hit of the flight from rest; run back, the graze is first then."""
+        tau, t = sign * line.points.T
+        hits = self._hits(model, tau, t > 0)
+        with np.errstate(invalid="ignore"):
+            return np.asarray(np.isfinite(hits) & (t > 0) & (np.abs(hits - t) <= SAME * (1 + t)))
 
     def _hits(self, model: Oscillator, tau: Array, wanted: Array) -> Array:
         """The times of first hits from rest; nan where there is none or it is not requested."""
@@ -407,12 +402,6 @@ def _curve(
     name: str, points: Array, axes: tuple[str, str], line: NamedLine, first: Callable[[], Array] | Array = NOWHERE
 ) -> Curve:
     return Curve(name, points, axes, line.marks, line.closed, line.tolerance, first)
-
-
-def _is_first(found: Array, t: Array) -> Array:
-    """A hit at the time of the vertex."""
-    with np.errstate(invalid="ignore"):
-        return np.asarray(np.isfinite(found) & (t > 0) & (np.abs(found - t) <= SAME * (1 + t)))
 
 
 def _to_the_end(curve: Curve) -> Array:

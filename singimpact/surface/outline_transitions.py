@@ -300,8 +300,7 @@ def _each_once(found: Iterable[Transition], ends: tuple[float, float]) -> list[T
     """The distinct ones between the ends: Newton's method may leave the interval, or find one point twice."""
     kept: list[Transition] = []
     for each in found:
-        twice = any(_same(each, old) for old in kept)
-        if ends[0] <= each.value <= ends[1] and not twice:
+        if ends[0] <= each.value <= ends[1] and not any(_same(each, old) for old in kept):
             kept.append(each)
     return kept
 
@@ -378,8 +377,7 @@ def _touch(family: Family, start: Array) -> Transition | None:
     tree = family.acceleration()
 
     def missed(point: Array) -> Array:
-        flights = RestFlights(family.at(float(point[2])))
-        height, velocity = flights.ends(point[:1], point[1:2])
+        height, velocity = RestFlights(family.at(float(point[2]))).ends(point[:1], point[1:2])
         a = evaluate(tree, {"t": float(point[0]), family.over: float(point[2])}, DOUBLES)
         return np.array([float(a), float(height[0]), float(velocity[0])])
 
@@ -398,8 +396,7 @@ def _touch(family: Family, start: Array) -> Transition | None:
 def _lips_or_beaks(flights: RestFlights, point: Array) -> str:
     """By the Hessian of y, from differences of its exact gradient."""
     h, at = 1e-4, point[:2]
-    points = at + h * np.array([[1, 0], [-1, 0], [0, 1], [0, -1]])
-    gradient = flights.y_and_gradient(points)[1]
+    gradient = flights.y_and_gradient(at + h * np.array([[1, 0], [-1, 0], [0, 1], [0, -1]]))[1]
     (tt, tm), (mt, mm) = (gradient[0] - gradient[1]) / (2 * h), (gradient[2] - gradient[3]) / (2 * h)
     mixed = (tm + mt) / 2
     determinant = tt * mm - mixed**2

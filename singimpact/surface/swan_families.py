@@ -164,8 +164,7 @@ def swan_curves(model: Oscillator, over: tuple[str, str], between: tuple[Any, An
     along, across = (window_ends(name, ends) for name, ends in zip(over, between, strict=True))
     rows: list[list[tuple[float, float, Transition]]] = []
     for value in np.linspace(*across, STEPS + 1).tolist():
-        family = Family(Family(model, second).at(value), first)
-        swans, _ = swans_met(family, np.linspace(*along, STEPS + 1))
+        swans, _ = swans_met(Family(Family(model, second).at(value), first), np.linspace(*along, STEPS + 1))
         rows.append([(swan.value, value, swan) for swan in swans])
     return [Curve("swan", np.array(line), over) for line in _linked(rows) if len(line) > 1]
 
@@ -263,16 +262,12 @@ def told(event: Transition, model: Oscillator) -> Transition:
     """
     rests = _in_first_period(event.rests, model)
     visible, launch = _seen(event, rests, model if model.upper is None else model.one_wall())
-    words = UNDECIDED if visible is None else WORDS[_key(event)] if visible else HIDDEN
+    words = UNDECIDED if visible is None else (WORDS.get(event.kind) or WORDS[event.event]) if visible else HIDDEN
     if visible and model.upper is not None:
         ends = np.array([rests[-1], rests[0] if launch is None else launch[0]])
         if OtherWall(model).is_met(np.full(2, rests[0]), ends - rests[0]).any():
             visible, launch, words = False, None, BEYOND
     return replace(event, rests=rests, visible=visible, launch=launch, effect=words)
-
-
-def _key(found: Transition) -> str:
-    return found.kind if found.kind in WORDS else found.event
 
 
 def _in_first_period(rests: tuple[float, ...], model: Oscillator) -> tuple[float, ...]:
@@ -312,15 +307,12 @@ def _from_above(jet: Array, first: bool, last: bool) -> bool:
     a, slope, curvature = jet.tolist()
     if abs(a) > SIGHT.flat:
         return bool(a > 0)
-    if abs(slope) > SIGHT.flat:
-        return (first or slope < 0) and (last or slope > 0)
-    return bool(curvature > 0)
+    return (first or slope < 0) and (last or slope > 0) if abs(slope) > SIGHT.flat else bool(curvature > 0)
 
 
 def _clear(model: Oscillator, start: float, end: float) -> bool | None:
     """Whether x > c between two rests; None where a minimum touches c."""
-    count = max(40, int((end - start) / SIGHT.step))
-    t = np.linspace(0, end - start, count)[1:]
+    t = np.linspace(0, end - start, max(40, int((end - start) / SIGHT.step)))[1:]
     t = t[(t > SIGHT.aside) & (t < end - start - SIGHT.aside)]
     if t.size < 3:
         return True  # one arch of a flight that is left and reached from above
@@ -340,9 +332,7 @@ def _launch(model: Oscillator, rest: float, jet: Array, size: float, count: int)
         if int(hit.status) != Status.hit or not -float(hit.velocity) > SIGHT.slow * size:
             return None
         return rest - float(hit.flight_time), -float(hit.velocity)
-    if count > 1 and jet[1] > SIGHT.flat:
-        return None
-    return _back_from_swan(model, rest, size)
+    return None if count > 1 and jet[1] > SIGHT.flat else _back_from_swan(model, rest, size)
 
 
 def _back_from_swan(model: Oscillator, rest: float, size: float) -> Launch:

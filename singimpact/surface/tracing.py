@@ -69,8 +69,7 @@ def traced(grid: Grid, gradient: Gradient, window: Window, cell: float, scale: f
     """
     axes = _axes(window, cell)
     values = grid(*axes)
-    loops = _small_ones(grid, axes, values, window)
-    small = (_followed(seed, gradient, window, size) for seed, size in loops)
+    small = (_followed(seed, gradient, window, size) for seed, size in _small_ones(grid, axes, values, window))
     sketched = (*(_thinned(line, window.least) for line in _sketched(axes, values)), *small)
     refined = [one for line in sketched if (one := _on_curve(line, gradient, window, scale, cell)) is not None]
     lines_: list[Polyline] = []
@@ -83,8 +82,7 @@ def traced(grid: Grid, gradient: Gradient, window: Window, cell: float, scale: f
 def _repeats(new: Polyline, old: Polyline) -> bool:
     """Whether a line lies on another: a component may be found from two extrema."""
     near = np.abs(old.points[:, None] - new.points[None, :: max(len(new.points) // 4, 1)]).max(axis=2).min(axis=0)
-    step = np.abs(np.diff(old.points, axis=0)).max()
-    return bool((near <= step).all())
+    return bool((near <= np.abs(np.diff(old.points, axis=0)).max()).all())
 
 
 def _axes(window: Window, cell: float) -> tuple[Array, Array]:

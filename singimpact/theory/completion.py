@@ -14,7 +14,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import lru_cache
-from math import comb
+from math import comb, prod
 from typing import Any
 
 from singimpact.algebra.interpolation import RationalCoefficients, in_lowest_terms
@@ -201,13 +201,9 @@ class _LaunchJets:
         numerators: dict[Exponents, list[Any]] = {}
         size = value.degrees()[-1] + 1
         for key, coefficient in value.to_dict().items():
-            jets = key[:-1]
-            if jets not in numerators:
-                numerators[jets] = [0] * size
-            numerators[jets][key[-1]] = coefficient
-        below = flint.fmpq_poly([1])
-        for n in range(1, power + 1):
-            below *= flint.fmpq_poly([1] + [0] * (n - 1) + [-1])
+            numerators.setdefault(key[:-1], [0] * size)[key[-1]] = coefficient
+        gaps = (flint.fmpq_poly([1] + [0] * (n - 1) + [-1]) for n in range(1, power + 1))
+        below = prod(gaps, start=flint.fmpq_poly([1]))
         return RationalCoefficients(
             {key: in_lowest_terms(flint.fmpq_poly(numerators[key]), below) for key in sorted(numerators)}
         )

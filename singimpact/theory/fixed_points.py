@@ -27,6 +27,8 @@ LEAST = Fraction(1, 10**308)  # isolating the roots of a smaller r takes minutes
 class _Enclosures(Result):
     """Certified numbers by name."""
 
+    __repr__ = in_words
+
     def as_dict(self) -> dict[str, Any]:
         """Names as on the paper's page -> value and radius as text."""
         return {name.rstrip("_"): enclosure for name, enclosure in super().as_dict().items()}
@@ -51,8 +53,6 @@ class TangencyFixedPoints(_Enclosures):
     one_minus_lambda: Certified
     mu_minus_one: Certified
 
-    __repr__ = in_words
-
 
 @dataclass(frozen=True, repr=False)
 class SwanFixedPoints(_Enclosures):
@@ -64,8 +64,6 @@ class SwanFixedPoints(_Enclosures):
     one_minus_lambda: Certified
     mu_minus_one: Certified
 
-    __repr__ = in_words
-
 
 @dataclass(frozen=True, repr=False)
 class Multipliers(_Enclosures):
@@ -75,8 +73,6 @@ class Multipliers(_Enclosures):
     mu: Certified
     one_minus_lambda: Certified
     mu_minus_one: Certified
-
-    __repr__ = in_words
 
 
 def as_dict(points: TangencyFixedPoints | SwanFixedPoints | Multipliers) -> dict[str, dict[str, str]]:
@@ -106,8 +102,8 @@ def tangency(r: Any, digits: int = 50) -> TangencyFixedPoints:
         low, middle, _ = real_roots(_shifted(_fixed_polynomial(1, rate), -half), balls)  # in m = lambda + 1/2
         Q = [-rate, -rate, 2 * rate + Fraction(9, 4)]  # Q_r(1, y + 1/2) = r (2y + 1)(y - 1) + (9/4) y^2
         minus, plus = real_roots(_shifted(Q, -half), balls)
-        found |= {"m1": low, "m2": middle, "m3": found["lambda_"] + balls.rational(half)}
-        return found | {"m_minus": minus, "m_plus": plus}
+        third = found["lambda_"] + balls.rational(half)
+        return found | {"m1": low, "m2": middle, "m3": third, "m_minus": minus, "m_plus": plus}
 
     return TangencyFixedPoints(**_certified(enclosures, precision))
 

@@ -344,12 +344,16 @@ def arc_in_numbers(order: int, j: int, model: Any, tau: Any = None) -> tuple[Pow
     rough = curve_at(where, order + j + TRUST.further, DOUBLES)
 
     def doubles(found: InvariantCurve, _: int) -> list[PowerSeries]:
-        made = []
-        for part in ("graph", "motion"):
-            further = {n: abs(float(value)) for n, value in getattr(rough, part).items() if n > order}
-            known = {n: as_double(ball) for n, ball in getattr(found, part).items() if n <= order}
-            made.append(PowerSeries("sigma", order, known, DOUBLE, further))
-        return made
+        return [
+            PowerSeries(
+                "sigma",
+                order,
+                {n: as_double(ball) for n, ball in getattr(found, part).items() if n <= order},
+                DOUBLE,
+                {n: abs(float(value)) for n, value in getattr(rough, part).items() if n > order},
+            )
+            for part in ("graph", "motion")
+        ]
 
     graph, motion = with_digits(
         lambda ring: curve_at(where, order + j, ring),

@@ -194,8 +194,7 @@ class _Solver:
 
     def _extend(self, level: int) -> None:
         """y at a level from y'' = tau(sigma) bracket, y(0) = y(1) = 0."""
-        right = dot(self.bracket[level::-1], self.tau)
-        twice = self.polys.integral(self.polys.integral(right))
+        twice = self.polys.integral(self.polys.integral(dot(self.bracket[level::-1], self.tau)))
         launch = self.polys.at_one(twice) * -1
         self.y.append(twice + self.polys.poly([0, 1]) * launch)
         self.slope.append(self.polys.derivative(self.y[level]))

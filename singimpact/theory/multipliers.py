@@ -131,8 +131,7 @@ def DG_on_ray(j: int) -> Any:
     launch, impact = launch_velocity(j, s, e), -r_of_lambda(j) * launch_velocity(j, e, s)
     before = sympy.Matrix([s, launch]).jacobian([s, e])
     after = sympy.Matrix([e, impact]).jacobian([s, e])
-    ratio = (after * before.inv()).subs({s: 1, e: lambda_})
-    matrix = ratio.applyfunc(sympy.cancel)
+    matrix = (after * before.inv()).subs({s: 1, e: lambda_}).applyfunc(sympy.cancel)
     x, y = sympy.symbols("x y")  # G takes (s, nu(s, e)) to (e, -r nu(e, s)): so it does to first order at (1, lambda)
     moved = {_s: 1 + x, _e: lambda_ + y}
     before = [_s - 1, _launched(j) - leading_coefficient(j)]

@@ -176,8 +176,7 @@ def normal_form(
     name = "cusp" if at == "cusp" else "tangency"
     if name == "tangency" and contact_order(at) != 1:
         raise refuse("at", at, "'tangency' or 'cusp': where p or phi has a normal form")
-    most = HIGHEST[name] if model is None else HIGHEST_NUMBERS
-    order = whole("order", order, 3, most)
+    order = whole("order", order, 3, HIGHEST[name] if model is None else HIGHEST_NUMBERS)
     if model is not None:
         if name == "cusp":
             raise InputError("at = 'cusp' takes no model: the cusps of a model are among its singular points")
@@ -194,8 +193,7 @@ def cusp_form(order: int) -> ShownForm:
     ring = SymbolRing(tuple(f"w_{i}{k}" for i, k in keys))
     space = JetSpace(("u", "t"), order, ring)
     germ: dict[Exponents, Any] = {key: ring.symbol(name) for key, name in zip(keys, ring.names, strict=True)}
-    w = space.jet({(0, 3): ring.rational(Fraction(1)), **germ})
-    return shown_form(reduced(w, 3))
+    return shown_form(reduced(space.jet({(0, 3): ring.rational(Fraction(1)), **germ}), 3))
 
 
 def _of_model(order: int, model: Any, tau: Any, digits: int) -> ShownForm:

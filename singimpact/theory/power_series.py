@@ -60,9 +60,7 @@ class PowerSeries:
     def __getitem__(self, power: int) -> Any:
         if isinstance(power, bool) or not isinstance(power, int) or not 0 <= power <= self.order:
             raise refuse("power", power, f"a whole number from 0 to {self.order}: the series is cut there")
-        if power in self.coefficients:
-            return self.coefficients[power]
-        return sympy.Integer(0)
+        return self.coefficients[power] if power in self.coefficients else sympy.Integer(0)
 
     def __len__(self) -> int:
         return self.order + 1
@@ -155,5 +153,4 @@ class PowerSeries:
 
 def _radius(sizes: Mapping[int, float]) -> float:
     """The radius of convergence that the last terms show, by roots: the least of them."""
-    shown = [size ** (-1 / n) for n, size in sizes.items() if size and n >= max(sizes) // 2]
-    return min(shown, default=inf)
+    return min((size ** (-1 / n) for n, size in sizes.items() if size and n >= max(sizes) // 2), default=inf)

@@ -50,7 +50,7 @@ def test_no_state_between_walls_is_wrong() -> None:
 
 
 def test_an_impact_at_the_wrong_wall_is_seen() -> None:
-    model = random_states.Model("linear", 2.0, 0.0, 0.3)
+    model = random_states.Model("linear", 2.0, 0.0, upper=0.3)
     osc = model.oscillator()
     step = osc.impact_map(1.0, 0.9)
     answer = [float(part) for part in (step.status, step.flight_time, step.v, step.wall)]

@@ -75,7 +75,10 @@ TO = 1e-3  # of the first velocity: where a peer ends
 def states_case(family: str, restitution: float, count: int, effort: Effort) -> Case:
     """Some calls of one state, or one of an array."""
     draw = partial(Draws, family, "chattering", restitution=restitution)
-    osc, run = model(family, restitution), _a_state if count == 1 else _an_array
+    osc, run = (
+        model(family, restitution),
+        _a_state if count == 1 else lambda states: states.osc.chatter_limit(states.tau, states.v).tau,
+    )
     setting, problems = f"{counted(count, 'state')} a call", CALLS if count == 1 else count
     own = [Method("singimpact, chatter_limit", setting, run, problems=problems, draw=draw(problems))]
     kind = "duffing" if family == "duffing" else "linear"
@@ -96,10 +99,6 @@ def _a_state(states: States) -> list[float]:
     ]
 
 
-def _an_array(states: States) -> Any:
-    return states.osc.chatter_limit(states.tau, states.v).tau
-
-
 def _in_digits_of(osc: ImpactOscillator, states: States) -> tuple[list[Any], list[float]]:
     """Limits with 25 digits: of linear models enclosures, which share no flight with the answers in doubles."""
     pairs = list(zip(states.tau.tolist(), states.v.tolist(), strict=True))
@@ -109,13 +108,14 @@ def _in_digits_of(osc: ImpactOscillator, states: States) -> tuple[list[Any], lis
 
 def summed(name: str, fly: Fly, draw: Draws) -> Method:
     """A peer that flies until v is a thousandth, and adds the rest by its first term."""
-
-    def run(problems: list[Problem]) -> list[Any]:
-        return [followed_impacts.chatter_limit(fly, each, TO * each.v, cos) for each in problems]
-
     tolerance = f"tolerance {ACCURACY[name]:.0e}, " if name in ACCURACY else ""
     setting = f"{tolerance}{counted(draw.count, 'state')}, until v < {TO:.0e} v"
-    return Method(name, setting, run, draw=lambda: draw().problems())
+    return Method(
+        name,
+        setting,
+        lambda problems: [followed_impacts.chatter_limit(fly, each, TO * each.v, cos) for each in problems],
+        draw=lambda: draw().problems(),
+    )
 
 
 # ---- thresholds
@@ -152,11 +152,12 @@ def _a_phase(states: States) -> list[float]:
 def between(name: str, fly: Fly, draw: Draws) -> Method:
     """A peer that bisects between a v whose chatter completes and one that loses contact."""
     end = pressing(draw.family)[1]
-
-    def run(problems: list[Problem]) -> list[Any]:
-        return [followed_impacts.threshold(fly, replace(each, v=GUESS), end, WIDTH) for each in problems]
-
-    return Method(name, f"{counted(draw.count, 'phase')}, to {WIDTH:.0e}", run, draw=lambda: draw().problems())
+    return Method(
+        name,
+        f"{counted(draw.count, 'phase')}, to {WIDTH:.0e}",
+        lambda problems: [followed_impacts.threshold(fly, replace(each, v=GUESS), end, WIDTH) for each in problems],
+        draw=lambda: draw().problems(),
+    )
 
 
 # mpmath at the working precision: `findroot` on the closed form of a flight.

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import lru_cache, partial
 from typing import Any
 
-from singimpact.bench.drawn import Draws, Problem, States, counted
+from singimpact.bench.drawn import Draws, Problem, counted
 from singimpact.bench.measuring import Case, Effort, Method, with_peers
 from singimpact.bench.peers import runge_kutta, taylor_events
 from singimpact.bench.peers.followed_impacts import Fly
@@ -49,7 +49,9 @@ def map_case(family: str, kind: str, alone: bool, sizes: Sizes) -> Case:
     """States of a kind, each in a call of its own or all in one array."""
     count, draw = sizes.flown if alone else sizes.many, partial(Draws, family, kind)
     setting = f"{counted(1 if alone else count, 'state')} a call"
-    run: Callable[..., Any] = _one_a_call if alone else _array
+    run: Callable[..., Any] = (
+        _one_a_call if alone else lambda states: states.osc.impact_map(states.tau, states.v).flight_time
+    )
     drawn: Callable[[], Any] = partial(_in_floats, draw(count)) if alone else draw(count)
     own = [Method("singimpact, impact_map", setting, run, problems=count, draw=drawn)]
     methods, skipped = with_peers(
@@ -72,10 +74,6 @@ def _one_a_call(drawn: tuple[ImpactOscillator, list[tuple[float, float]]]) -> li
     return [osc.impact_map(tau, v).flight_time for tau, v in states]
 
 
-def _array(states: States) -> Any:
-    return states.osc.impact_map(states.tau, states.v).flight_time
-
-
 @lru_cache(maxsize=4)
 def taylor_stepper(family: str) -> Fly:
     """heyoka's integrator, compiled once."""
@@ -89,18 +87,28 @@ def _time(fly: Fly) -> Callable[[Problem], Sequence[float]]:
 
 def _peer(name: str, fly: Callable[[Problem], Sequence[float]], draw: Draws) -> Method:
     """A peer, which flies one state after another; `fly` gives a list of numbers a state."""
-
-    def run(problems: list[Problem]) -> list[float]:
-        return [number for problem in problems for number in fly(problem)]
-
     setting = f"tolerance {ACCURACY[name]:.0e}, {counted(draw.count, 'state')}"
-    return Method(name, setting, run, problems=draw.count, draw=lambda: draw().problems())
+    return Method(
+        name,
+        setting,
+        lambda problems: [number for problem in problems for number in fly(problem)],
+        problems=draw.count,
+        draw=lambda: draw().problems(),
+    )
 
 
 def derivative_case(sizes: Sizes) -> Case:
     """All four entries of D G, of an array of states."""
     draw, setting = partial(Draws, "linear", "generic"), f"{sizes.many} states a call"
-    own = [Method("singimpact, derivative", setting, _entries, problems=sizes.many, draw=draw(sizes.many))]
+    own = [
+        Method(
+            "singimpact, derivative",
+            setting,
+            lambda states: states.osc.derivative(states.tau, states.v).matrix.reshape(-1),
+            problems=sizes.many,
+            draw=draw(sizes.many),
+        )
+    ]
     methods, skipped = with_peers(
         own,
         lambda: [_peer(HEYOKA, taylor_events.varied(ACCURACY[HEYOKA]), draw(sizes.heyoka))],
@@ -108,7 +116,3 @@ def derivative_case(sizes: Sizes) -> Case:
     )
     truth, kappas = drawn_flights.derivatives(draw(sizes.many)(), sizes.judged["linear"])
     return Case("linear, derivative of the map", methods, truth, kappas, skipped)
-
-
-def _entries(states: States) -> Any:
-    return states.osc.derivative(states.tau, states.v).matrix.reshape(-1)

@@ -110,11 +110,13 @@ def _numbers(states: States) -> Array:
 
 def _flown(family: str, kind: str, effort: Effort) -> Method:
     count = 10 * effort.judged
-
-    def run(states: States) -> Any:
-        return fixed_steps.flights(states.tau, states.v, _numbers(states))
-
-    return Method("numba", f"{count} states", run, problems=count, draw=Draws(family, kind, count))
+    return Method(
+        "numba",
+        f"{count} states",
+        lambda states: fixed_steps.flights(states.tau, states.v, _numbers(states)),
+        problems=count,
+        draw=Draws(family, kind, count),
+    )
 
 
 def _orbits(family: str) -> Method:
@@ -131,12 +133,16 @@ def _basins(effort: Effort) -> list[Method]:
     side, few = (40, 10) if effort.quick else (400, 20)
     tau, v = (axis.ravel().tolist() for axis in np.meshgrid(np.linspace(0, 2, few), np.linspace(0.01, 2, few)))
     n = fixed_steps.numbers("linear", 2.8, 0.1, -1.0)
-
-    def run() -> list[Array]:
-        return [fixed_steps.orbit(*state, 200, 0.8, n)[-10:] for state in zip(tau, v, strict=True)]
-
     own = partial(si.basins, TWO_BASINS, size=side)
-    return [_timed("singimpact", f"{side} x {side}", side**2, own), _timed("numba", f"{few} x {few}", few**2, run)]
+    return [
+        _timed("singimpact", f"{side} x {side}", side**2, own),
+        _timed(
+            "numba",
+            f"{few} x {few}",
+            few**2,
+            lambda: [fixed_steps.orbit(*state, 200, 0.8, n)[-10:] for state in zip(tau, v, strict=True)],
+        ),
+    ]
 
 
 def _diagrams(effort: Effort) -> list[Method]:
@@ -144,11 +150,10 @@ def _diagrams(effort: Effort) -> list[Method]:
     own = partial(si.bifurcation, TWO_BASINS, "clearance", OVER, points=count)
     # of 260 impacts at each clearance the first 200 are not drawn, because the orbit settles in them
     models = [fixed_steps.numbers("linear", 2.8, c, -1.0) for c in np.linspace(*OVER, few)]
-
-    def run() -> list[Array]:
-        return [fixed_steps.orbit(0.0, 0.1, 260, 0.8, n)[200:] for n in models]
-
-    return [_timed("singimpact", f"{count} values", count, own), _timed("numba", f"{few} values", few, run)]
+    return [
+        _timed("singimpact", f"{count} values", count, own),
+        _timed("numba", f"{few} values", few, lambda: [fixed_steps.orbit(0.0, 0.1, 260, 0.8, n)[200:] for n in models]),
+    ]
 
 
 def _timed(name: str, setting: str, problems: int, call: Callable[[], object]) -> Method:

@@ -91,12 +91,6 @@ class Follower:
     impacts: int
     horizon: float
 
-    @property
-    def period(self) -> float:
-        """The period of the forcing."""
-        assert self.plain.period is not None
-        return self.plain.period
-
     def first(self, tau: float, v: float) -> Fate:
         """The first behaviour of an orbit: a chatter that completes counts."""
         if not v and self.plain.at(v).push(tau) < 0:
@@ -112,7 +106,7 @@ class Follower:
             if wait <= 0 and self._slow(tau, v):
                 end = self.plain.chatter(tau, v, FOLLOWED.most)
                 if end.status == "complete":
-                    elapsed = turns * self.period + tau + end.time - begun
+                    elapsed = turns * self.plain.period + tau + end.time - begun
                     return Fate("chatter", 0, 0, tau + end.time, copysign(0.0, end.v), count, elapsed)
                 wait = end.impacts
             if count % FOLLOWED.every == 0 and (closed := self._closed(states)):
@@ -125,8 +119,8 @@ class Follower:
         hit = self.plain.fly(tau, v, True, self.horizon)
         if not self.plain.goes_on(hit):
             return MISS if hit.status == MISS else UNDECIDED
-        passed = (tau + hit.time) // self.period
-        states.append((tau + hit.time - passed * self.period, hit.v, turns + passed))
+        passed = (tau + hit.time) // self.plain.period
+        states.append((tau + hit.time - passed * self.plain.period, hit.v, turns + passed))
         return HIT
 
     def _slow(self, tau: float, v: float) -> bool:
@@ -134,14 +128,14 @@ class Follower:
         if abs(v) > FOLLOWED.slow * self.fast or not here.slope < 1:
             return False
         a = here.push(tau)
-        return a < 0 and 2 * abs(v) / (-a * (1 - here.slope)) < FOLLOWED.short * self.period
+        return a < 0 and 2 * abs(v) / (-a * (1 - here.slope)) < FOLLOWED.short * self.plain.period
 
     def _closed(self, states: deque[State]) -> tuple[int, int] | None:
         """(n, k) of the last states, where the last one is near the one n impacts before it."""
         tau, v, turns = states[-1]
         for n in range(1, len(states)):
             earlier, speed, before = states[-1 - n]
-            passed = turns - before + (tau - earlier) / self.period
+            passed = turns - before + (tau - earlier) / self.plain.period
             k = round(passed)
             if k > 0 and abs(passed - k) < FOLLOWED.close and abs(v - speed) < FOLLOWED.close * self.fast:
                 return n, k
@@ -170,7 +164,7 @@ class Follower:
             lifted = phase, copysign(1.0, after.v)
             if lifted in path:
                 at = path.index(lifted)
-                return Fate("chatter for ever", 0, round(sum(times[at:]) / self.period), impacts=fate.impacts)
+                return Fate("chatter for ever", 0, round(sum(times[at:]) / self.plain.period), impacts=fate.impacts)
             path.append(lifted)
             after, time = _after_lift_off(self, *lifted)
             if after.kind != "chatter":
@@ -179,15 +173,15 @@ class Follower:
 
     def separates(self, state: tuple[float, float], distance: float, impacts: int) -> bool:
         """Whether an orbit and a neighbour part within so many impacts."""
-        one, other = state, (state[0] + distance * self.period, state[1] * (1 + distance))
+        one, other = state, (state[0] + distance * self.plain.period, state[1] * (1 + distance))
         for _ in range(impacts):
             ends = [self.plain.impacts(*start, 1, True) for start in (one, other)]
             if None in ends:
                 return ends[0] is not ends[1]
             (t, v), (s, u) = ((start[0] + end[0], end[1]) for start, end in zip((one, other), ends, strict=True) if end)
-            if abs(t - s) > FOLLOWED.parted * self.period or abs(v - u) > FOLLOWED.parted * self.fast:
+            if abs(t - s) > FOLLOWED.parted * self.plain.period or abs(v - u) > FOLLOWED.parted * self.fast:
                 return True
-            turns = t // self.period * self.period
+            turns = t // self.plain.period * self.plain.period
             one, other = (t - turns, v), (s - turns, u)
         return False
 
@@ -209,7 +203,7 @@ def _after_lift_off(follower: Follower, index: int, side: float) -> tuple[Fate, 
         return fate, inf
     there = follower.plain.at(fate.v)
     rest = there.lift_offs[there.next_lift_off(fate.tau)] - fate.tau if there.lift_offs else inf
-    return fate, hit.time + fate.elapsed + rest % follower.period
+    return fate, hit.time + fate.elapsed + rest % follower.plain.period
 
 
 @dataclass(frozen=True)
@@ -248,8 +242,7 @@ def row(flown: Flown) -> Row:
     first = answer.first_chatter_completes.ravel()
     for at in tally.in_time(places.tolist()):
         state = float(tau[at]), float(v[at])
-        answered = answer.attractors[answer.codes.ravel()[at]]
-        _pixel(follower, state, answered, bool(first[at]), tally)
+        _pixel(follower, state, answer.attractors[answer.codes.ravel()[at]], bool(first[at]), tally)
     return tally.row()
 
 
@@ -295,9 +288,7 @@ def _agrees(follower: Follower, answer: LongRun, first: bool, fate: Fate) -> boo
 
 def _near(follower: Follower, answer: LongRun, fate: Fate) -> bool:
     """Whether the last state is one of the attractor."""
-    period = follower.plain.period
-    assert period is not None
-    away = (fate.tau - answer.tau) / period
+    away = (fate.tau - answer.tau) / follower.plain.period
     near = (np.abs(away - np.rint(away)) < PIXELS.same) & (np.abs(fate.v - answer.v) < PIXELS.same * follower.fast)
     return bool(near.any())
 

@@ -149,8 +149,8 @@ def flown(osc: ImpactOscillator, states: int, seed: int) -> Flown:
 def _joined(parts: list[Step]) -> Step:
     # notes and what is certified are no arrays, and no row reads them
     names = [field.name for field in fields(Step) if field.name not in ("notes", "certified")]
-
-    def joined(name: str) -> Any:
-        return np.concatenate([np.broadcast_to(getattr(part, name), np.shape(part.status)) for part in parts])
-
-    return Step(**{name: joined(name) for name in names})
+    columns: dict[str, Any] = {
+        name: np.concatenate([np.broadcast_to(getattr(part, name), np.shape(part.status)) for part in parts])
+        for name in names
+    }
+    return Step(**columns)

@@ -154,7 +154,7 @@ def _last(
             tally.leave("steps do not settle")
         else:
             tally.judge(np.inf if hit.status == HIT else 0.0, state + f"no return, truth {hit.time!r}")
-    elif phase[0] == "sticking" and plain.period is not None:
+    elif phase[0] == "sticking" and not np.isnan(plain.period):
         pushes = plain.at(last[1]).grid[1]
         noise = ORBITS.rounding * EPSILON * float(np.max(np.abs(pushes)))
         tally.judge(0.0 if float(np.max(pushes)) <= noise else np.inf, state + "rest for ever, a_c is positive")

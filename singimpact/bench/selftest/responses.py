@@ -54,8 +54,7 @@ def round_trip(flown: Flown) -> Row:
             tally.leave("CPU time used up", hit.size - begin)
             break
         _judge(flown, hit[begin : begin + DRAW.together], tally)
-    result = tally.row()
-    return result if hit.size else Row(ROUND_TRIP_NAME, note="no flight that was drawn returns")
+    return tally.row() if hit.size else Row(ROUND_TRIP_NAME, note="no flight that was drawn returns")
 
 
 def _judge(flown: Flown, places: Array, tally: Tally) -> None:

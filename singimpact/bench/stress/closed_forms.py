@@ -100,12 +100,8 @@ def _grazes(curve: bool, name: str, points: int) -> Iterator[Trial]:
                     spread = ((1.2 * touching, 0.8 * touching), (omega - 0.02, omega + 0.02))
                     at = event_curve(event, ("amplitude", "omega"), spread).parameters[-1]
                     number, value = float(at[1]), float(at[0])
-                values, rounding = moved(_touching, [number, 0.1])
+                values, rounding = moved(lambda w, d: [-mpmath.sqrt((1 - w**2) ** 2 + (d * w) ** 2)], [number, 0.1])
                 yield Trial(place_of, [value], values, rounding)
-
-
-def _touching(omega: Any, damping: Any) -> list[Any]:
-    return [-mpmath.sqrt((1 - omega**2) ** 2 + (damping * omega) ** 2)]
 
 
 CLOSED_FORM = "closed form"

@@ -37,23 +37,6 @@ def model(bend: Fraction = Fraction(1, 3), r: Any = "1/2") -> ImpactOscillator:
     return ImpactOscillator("x + xdot/8 + x**3/4", "e*t*3 + t**2/3", 0, r, {"e": bend})
 
 
-def _near_tangency(points: int) -> Iterator[tuple[Fraction, float, float]]:
-    for off in powers(points, 12):
-        yield Fraction(1, 3), -off, off * 0.7
-
-
-def _short(points: int) -> Iterator[tuple[Fraction, float, float]]:
-    for t in powers(points, 15):
-        for side in (1, -1):
-            yield Fraction(1, 3), -0.2, side * t
-
-
-def _weak(points: int) -> Iterator[tuple[Fraction, float, float]]:
-    for bend in powers(points, 12):
-        yield Fraction(bend), -0.1, 0.17
-        yield -Fraction(bend), 0.1, -0.17
-
-
 def _zero(impact: bool, points: int) -> Iterator[tuple[Fraction, float, float]]:
     """Next to where v (or x' at the landing) vanishes: from the root of the cut series in t at sigma = -1/8."""
     terms, sigma = _terms(Fraction(1, 3), impact), mpmath.mpf(-0.125)
@@ -67,9 +50,17 @@ def _zero(impact: bool, points: int) -> Iterator[tuple[Fraction, float, float]]:
 
 PLACES: dict[str, tuple[bool, Callable[[int], Iterator[tuple[Fraction, float, float]]]]] = {
     "v -> 0": (False, partial(_zero, False)),
-    "t -> 0": (False, _short),
-    "a -> 0": (False, _near_tangency),
-    "a' -> 0": (False, _weak),
+    "t -> 0": (
+        False,
+        lambda points: ((Fraction(1, 3), -0.2, side * t) for t in powers(points, 15) for side in (1, -1)),
+    ),
+    "a -> 0": (False, lambda points: ((Fraction(1, 3), -off, off * 0.7) for off in powers(points, 12))),
+    "a' -> 0": (
+        False,
+        lambda points: (
+            (side * Fraction(bend), -0.1 * side, 0.17 * side) for bend in powers(points, 12) for side in (1, -1)
+        ),
+    ),
     "next to P": (True, partial(_zero, True)),
     "next to Z": (False, partial(_zero, False)),
 }
@@ -166,15 +157,11 @@ NEAR: dict[str, tuple[float, Callable[[Launch, float], Launch]]] = {
 }
 
 
-def _states(place: str, points: int) -> Iterator[Launch]:
-    last, moved = NEAR[place]
-    for off in powers(min(points, FEW), last):
-        yield moved(START, off)
-
-
 def _chatter_limit(name: str, points: int) -> Iterator[Trial]:
     """tau_inf; the state and every phase until then are rounded relative to tau_inf itself."""
-    for at in _states(name, points):
+    last, near = NEAR[name]
+    for off in powers(min(points, FEW), last):
+        at = near(START, off)
         osc = at.model
         flown, true = osc.chatter_limit(at.tau, at.v), osc.chatter_limit(at.tau, at.v, digits=DIGITS)
         status = int(flown.status), int(true.status)

@@ -14,7 +14,7 @@ from singimpact.bench.stress.judging import STEP, Function, Sweep, Trial
 from singimpact.bench.stress.launches import PLACES, Launch, SteepLaunch, both
 from singimpact.bench.truth import enclosed_flight
 from singimpact.bench.truth.enclosed_flight import EnclosureSettings
-from singimpact.bench.truth.first_hit import first_hit, first_of_both
+from singimpact.bench.truth.first_hit import first_of_both
 from singimpact.flights.inverse_map import backwards
 from singimpact.status import Status
 
@@ -92,10 +92,7 @@ def landing(launch: Launch, tau: Any, v: Any, sign: int = 1) -> Landing | int:
     if v == 0 and not motion.at(0)[2] > 0:
         return int(Status.sticks)
     try:
-        if launch.upper is None:
-            hit = first_hit(motion, float(v), launch.horizon)
-        else:
-            hit = first_of_both(motion, float(v), launch.horizon, launch.gap)
+        hit = first_of_both(motion, float(v), launch.horizon, launch.gap)
     except ArithmeticError:
         return int(Status.graze)
     if hit is None:

@@ -7,7 +7,7 @@ that vary within 1/K of a state, K towards 1e4; two walls from 1e-12 to 1e6 apar
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from math import acos, pi
+from math import acos, log2, pi
 from typing import Any
 
 import flint
@@ -55,8 +55,8 @@ class Launch:
 
     @property
     def gap(self) -> Any:
-        """The distance of both walls, a ball."""
-        return flint.arb(self.upper) - flint.arb(self.clearance)
+        """The distance of both walls, a ball; None of one wall."""
+        return None if self.upper is None else flint.arb(self.upper) - flint.arb(self.clearance)
 
     @property
     def horizon(self) -> float:
@@ -66,8 +66,6 @@ class Launch:
     @property
     def bits(self) -> int:
         """Precision of the balls in bits; small v need more."""
-        from math import log2
-
         return BITS + (int(4 * max(-log2(self.v), 0)) if self.v else 0)
 
     def __str__(self) -> str:
@@ -108,27 +106,6 @@ def _small_v(family: str, points: int) -> Iterator[Launch]:
     yield Launch(family, tau=0.9, v=1e-300)
 
 
-def _short(family: str, points: int) -> Iterator[Launch]:
-    for v in powers(points, 16, 0):
-        yield Launch(family, clearance=30.0, v=v)
-
-
-def _resonant(family: str, points: int) -> Iterator[Launch]:
-    for off in (0.0, *powers(points, 15)):
-        for omega in {1 + off, 1 - off}:
-            yield Launch(family, omega, -0.5, tau=0.3)
-
-
-def _dead(family: str, points: int) -> Iterator[Launch]:
-    for r in powers(points, 15):
-        yield Launch(family, restitution=r)
-
-
-def _elastic(family: str, points: int) -> Iterator[Launch]:
-    for off in powers(points, 15):
-        yield Launch(family, restitution=1 - off)
-
-
 def _tangent(family: str, points: int) -> Iterator[Launch]:
     place = acos(0.3 if family == "linear" else 0.3 + 0.3 * 0.3**3) / 2.8
     for off in powers(points, 15):
@@ -153,12 +130,16 @@ def _grazing(family: str, points: int) -> Iterator[Launch]:
         with balls_at(BITS):
             motion = at.motion(-touch, 0.0, -1)
             hit = first_hit(motion, 0.0, 60.0) if motion.at(0)[2] > 1e-3 else None
-        if hit is None:
-            continue
-        for off in powers(points, 13):
-            for side in (1, -1):
-                v = -float(hit[1]) * (1 + side * off)
-                yield Launch(family, clearance=-0.4, tau=touch - float(hit[0]), v=v)
+        yield from _beside(at, touch, hit, points)
+
+
+def _beside(at: Launch, touch: float, hit: tuple[Any, Any] | None, points: int) -> Iterator[Launch]:
+    """Launches at the lower wall beside the one whose flight grazes at a time, where a flight back from there hits."""
+    if hit is None:
+        return
+    for off in powers(points, 13):
+        for side in (1, -1):
+            yield replace(at, wall=0, tau=touch - float(hit[0]), v=-float(hit[1]) * (1 + side * off))
 
 
 def _between(family: str, points: int) -> Iterator[Launch]:
@@ -172,25 +153,7 @@ def _between(family: str, points: int) -> Iterator[Launch]:
         at = Launch(family, clearance=-0.4, upper=0.6, wall=1)
         with balls_at(BITS):
             hit = first_hit(Above(at.motion(-touch, 0.0, -1), at.gap), 0.0, 60.0)
-        if hit is None:
-            continue
-        for off in powers(points, 13):
-            for side in (1, -1):
-                v = -float(hit[1]) * (1 + side * off)
-                yield replace(at, wall=0, tau=touch - float(hit[0]), v=v)
-
-
-def _resting(family: str, points: int) -> Iterator[Launch]:
-    """Launches with a > 0 whose velocity runs to 0: the flight is long, Z is where it left at rest."""
-    for v in (0.0, *powers(points, 16)):
-        yield Launch(family, clearance=-0.4, tau=0.2, v=v)
-        yield Launch(family, clearance=0.2, tau=0.4, v=v)
-
-
-def _late(family: str, points: int) -> Iterator[Launch]:
-    for size in powers(points, 15):
-        yield Launch(family, tau=0.9 + 1 / size)
-        yield Launch(family, tau=-1 / size)
+        yield from _beside(at, touch, hit, points)
 
 
 def _long(family: str, points: int) -> Iterator[Launch]:
@@ -229,15 +192,24 @@ def _parametric(family: str, points: int) -> Iterator[Launch]:
 
 PLACES: dict[str, Launches] = {
     "v -> 0": _small_v,
-    "t -> 0": _short,
-    "omega -> 1": _resonant,
-    "r -> 0": _dead,
-    "r -> 1": _elastic,
+    "t -> 0": lambda family, points: (Launch(family, clearance=30.0, v=v) for v in powers(points, 16, 0)),
+    "omega -> 1": lambda family, points: (
+        Launch(family, omega, -0.5, tau=0.3) for off in (0.0, *powers(points, 15)) for omega in {1 + off, 1 - off}
+    ),
+    "r -> 0": lambda family, points: (Launch(family, restitution=r) for r in powers(points, 15)),
+    "r -> 1": lambda family, points: (Launch(family, restitution=1 - off) for off in powers(points, 15)),
     "a -> 0": _tangent,
     "a' -> 0": _swan,
     "next to P": _grazing,
-    "next to Z": _resting,
-    "huge tau": _late,
+    # launches with a > 0 whose velocity runs to 0: the flight is long, Z is where it left at rest
+    "next to Z": lambda family, points: (
+        Launch(family, clearance=clearance, tau=tau, v=v)
+        for v in (0.0, *powers(points, 16))
+        for clearance, tau in ((-0.4, 0.2), (0.2, 0.4))
+    ),
+    "huge tau": lambda family, points: (
+        Launch(family, tau=tau) for size in powers(points, 15) for tau in (0.9 + 1 / size, -1 / size)
+    ),
     "long flights": _long,
     "steep layers": _steep,
     "t in f": _parametric,

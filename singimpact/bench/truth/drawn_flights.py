@@ -48,7 +48,7 @@ def derivatives(states: States, count: int) -> Truth:
 
     def values(tau: Any, v: Any) -> tuple[list[Any], list[Any]]:
         time, u, motion = _hit(states, tau, v)
-        e, r = motion.at(time)[2], _ball(states.restitution)
+        e, r = motion.at(time)[2], flint.arb(states.restitution)
         (z_by_tau, u_by_tau), (z_by_v, u_by_v) = motion.variations(time)
         time_by_tau, time_by_v = -z_by_tau / u, -z_by_v / u
         rows = [1 + time_by_tau, time_by_v, -r * (u_by_tau + e * time_by_tau), -r * (u_by_v + e * time_by_v)]
@@ -64,7 +64,7 @@ def impacts(states: States, count: int, wanted: Sequence[int]) -> Truth:
         times = []
         for number in range(1, max(wanted) + 1):
             time, u, _ = _hit(states, tau, v)
-            tau, v = tau + time, -_ball(states.restitution) * u
+            tau, v = tau + time, -flint.arb(states.restitution) * u
             if number in wanted:
                 times.append(tau)
         return times, times
@@ -82,25 +82,21 @@ def _hit(states: States, tau: Any, v: Any) -> tuple[Any, Any, Any]:
     return *found, motion
 
 
-def _ball(value: Any) -> Any:
-    return flint.arb(value)
-
-
 def _judged(states: States, count: int, values: Values) -> Truth:
     truth: list[str] = []
     kappas: list[float] = []
     for tau, v in zip(states.tau[:count].tolist(), states.v[:count].tolist(), strict=True):
         with balls_at(BITS + int(8 * max(-log2(v), 0))):
-            found, times = values(_ball(tau), _ball(v))
+            found, times = values(flint.arb(tau), flint.arb(v))
             truth += [each.str(DIGITS, radius=False) for each in found]
             kappas += _conditions(states, (tau, v), values, (found, times))
     return truth, kappas
 
 
 def _conditions(states: States, state: tuple[float, float], values: Values, found: Any) -> list[float]:
-    tau, v = (_ball(part) for part in state)
+    tau, v = (flint.arb(part) for part in state)
     period = 2 * pi / OMEGAS[states.family]
-    small = _ball(SMALL)
+    small = flint.arb(SMALL)
     by_tau, by_v = values(tau + small, v)[0], values(tau, v * (1 + small))[0]
     near = abs(state[0] - period * round(state[0] / period))
     return [

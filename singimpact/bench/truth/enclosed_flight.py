@@ -260,8 +260,8 @@ def taylor(equation: Equation, t: Any, x: Any, u: Any, degree: int) -> list[Any]
     while len(X) <= degree:
         m, count = len(X) - 1, min(2 * len(X) - 2, degree - 1)  # X_0..X_m are known; count: residuals that are right
         slopes = [(k + 1) * X[k + 1] for k in range(m)]
-        values = {"x": arb_series(X, prec=count), "xdot": arb_series(slopes, prec=count)}
-        values["t"] = arb_series([t, 1], prec=count)
+        places = {"x": X, "xdot": slopes, "t": [t, 1]}
+        values = {name: arb_series(series_, prec=count) for name, series_ in places.items()}
         f, by_x, by_u = (_listed(series_, count) for series_ in equation.force.run(values))
         damped = not all(series_.is_zero() for series_ in by_u[1:])  # a ball round 0 is not 0
         for k in range(m - 1, count):
@@ -337,8 +337,7 @@ def _bounded(
             }
             _, by_x, by_u = equation.force.run(values | {"t": t + arb(0, _upper(length))})
             if by_x.is_finite() and by_u.is_finite():
-                matrix = arb_mat([[0, 1], [_upper(by_x), -arb(arb(by_u).lower())]])
-                grown = (matrix * length).exp()
+                grown = (arb_mat([[0, 1], [_upper(by_x), -arb(arb(by_u).lower())]]) * length).exp()
                 cut = M * R * (length / R) ** degree / degree
                 most = arb(1).max(grown[1, 1])
                 p = _upper(grown[0, 0] * start[0] + grown[0, 1] * (start[1] + cut))

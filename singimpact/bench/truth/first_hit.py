@@ -48,8 +48,13 @@ def first_hit(motion: "Linear | Cubic | Above", v: float, horizon: float) -> tup
 
 
 def first_of_both(motion: "Linear | Cubic", v: float, horizon: float, gap: Any) -> tuple[Any, Any] | None:
-    """Time and velocity of the first hit of the wall below, or of one above at a distance `gap`, where x' > 0."""
+    """Time and velocity of the first hit of the wall below, or of one above at a distance `gap`, where x' > 0.
+
+    Without a `gap` there is no wall above.
+    """
     below = first_hit(motion, v, horizon)
+    if gap is None:
+        return below
     above = first_hit(Above(motion, gap), v, horizon if below is None else float(below[0]))
     return below if above is None else (above[0], -above[1])
 

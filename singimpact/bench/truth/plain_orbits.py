@@ -70,7 +70,7 @@ class PlainOrbits:
     Parameters
     ----------
     motion : the model as `graded_steps` flies it. rho : velocity after an impact.
-    slope : -rho'(0); nan where rho is not smooth at rest, or loses nothing there. period : of g, or None.
+    slope : -rho'(0); nan where rho is not smooth at rest, or loses nothing there. period : of g, or nan.
     rate : fastest rate of the model. horizon : of a flight. above : those of a second wall, in -x.
 
     With two walls velocities are those of x: states of the upper wall have v < 0, or -0.0.
@@ -79,7 +79,7 @@ class PlainOrbits:
     motion: Motion
     rho: Callable[[float], float]
     slope: float
-    period: float | None
+    period: float
     rate: float
     horizon: float
     above: "PlainOrbits | None" = None
@@ -231,14 +231,12 @@ class PlainOrbits:
     @cached_property
     def grid(self) -> tuple[Array, Array]:
         """Times of one period, shifted by a part of an interval, and a_c there."""
-        assert self.period is not None
         times = (np.arange(SETTINGS.grid) + 0.4142) * self.period / SETTINGS.grid
         return times, self.pushes(times)
 
     @cached_property
     def lift_offs(self) -> tuple[float, ...]:
         """Phases in one period at which a_c becomes positive, by bisection."""
-        assert self.period is not None
         times, a = self.grid
         ends = np.append(times[1:], times[0] + self.period)
         rising = np.flatnonzero((a < 0) & (np.roll(a, -1) >= 0))
@@ -251,7 +249,6 @@ class PlainOrbits:
 
     def next_lift_off(self, tau: float) -> int:
         """The place in `lift_offs` of the first after a time; -1 where there is none."""
-        assert self.period is not None
         if not self.lift_offs:
             return -1
         return int(np.searchsorted(np.array(self.lift_offs), tau % self.period)) % len(self.lift_offs)
@@ -315,7 +312,6 @@ def plain_orbits(osc: Oscillator, rate: float, horizon: float, fast: float, abov
     rho = plain_steps.rebound(osc.mirrored if above else osc)
     slopes = [rho(-slow) / slow for slow in (SETTINGS.slow * fast, 1e-3 * SETTINGS.slow * fast)]
     smooth = abs(slopes[1] - slopes[0]) <= 1e-6 * slopes[0] and slopes[0] < 1 - 1e-6
-    period = None if osc.period is None else as_float(osc.period)
     motion = plain_steps.motion(osc, rate, above)
     second = plain_orbits(osc, rate, horizon, fast, True) if osc.upper is not None and not above else None
-    return PlainOrbits(motion, rho, slopes[1] if smooth else nan, period, rate, horizon, second)
+    return PlainOrbits(motion, rho, slopes[1] if smooth else nan, as_float(osc.period), rate, horizon, second)

@@ -94,9 +94,7 @@ def _operation(kind: str, parts: tuple[Any, ...]) -> str:
         return str(parts[0])
     if kind == "number":
         return repr(math.pi if parts[0] is None else float(parts[0]))
-    if kind == "power":
-        return _power(f"s{parts[0]}", parts[1])
-    return f"{kind}(s{parts[0]})"
+    return _power(f"s{parts[0]}", parts[1]) if kind == "power" else f"{kind}(s{parts[0]})"
 
 
 def _power(base: str, exponent: Fraction) -> str:

@@ -66,8 +66,7 @@ def call(function: str, z: Any) -> Any:
         return flint.acb(flint.arb.nan())  # the box may meet the cuts of atan, beyond i and -i
     if function == "tanh" and isinstance(z, flint.arb_series):
         # the exponential that is not large, so that nothing overflows and 1 + it is far from 0
-        falling = -2 * z if z[0].mid() > 0 else 2 * z
-        small = falling.exp()
+        small = (-2 * z if z[0].mid() > 0 else 2 * z).exp()
         quotient = (1 - small) / (1 + small)
         return quotient if z[0].mid() > 0 else -quotient
     return getattr(z, function)()

@@ -194,8 +194,7 @@ def landing_speed(o: Gravity, S: Any, e: Any) -> Any:
     """An upper bound of int (u + S)|A|/(e + S) du from -S to e: by its value, and by the largest |A|."""
     at = [abs(x) ** o.j * sum_after(o, x, _one) for x in (e, -S)]
     rough = at[0].max(at[1]) * (e + S) / 2
-    total = _moment(o, e, 2) + S * _moment(o, e, 1) + S * _moment(o, -S, 1) - _moment(o, -S, 2)
-    exact = total / (e + S)
+    exact = (_moment(o, e, 2) + S * _moment(o, e, 1) + S * _moment(o, -S, 1) - _moment(o, -S, 2)) / (e + S)
     bound = arb(rough.upper())
     return bound.min(arb(exact.upper())) if exact.is_finite() else bound
 
@@ -203,14 +202,11 @@ def landing_speed(o: Gravity, S: Any, e: Any) -> Any:
 def flight_bound(speed: Any, e: Any, alpha: Any) -> Any:
     """A length within which a flight from s = e with this speed lands, |A| >= alpha s^2: alpha d (e^2/2 + e d/3 +
     d^2/12) >= speed; None where none is found."""
-    high = 1.0
     need, start, weight = float(speed.upper()), float(e.mid()), float(alpha.mid())
-    low = 0.0
+    low, high = 0.0, 1.0
     for _ in range(40):
         d = (low + high) / 2
-        if weight * d * (start**2 / 2 + start * d / 3 + d * d / 12) > need:
-            high = d
-        else:
-            low = d
+        lands = weight * d * (start**2 / 2 + start * d / 3 + d * d / 12) > need
+        low, high = (low, d) if lands else (d, high)
     length = arb(high * 1.001)
     return length if alpha * length * (e * e / 2 + e * length / 3 + length * length / 12) >= speed else None

@@ -170,9 +170,7 @@ def _discs(numbers: LinearNumbers, s0: Any) -> list[tuple[Any, Any]]:
 
 def clock_of(osc: Oscillator, zero: ContactZero, bits: int) -> LinearNumbers:
     """The numbers by which S and time are exchanged: those of a linear model; S is the time for others."""
-    if linear_form(osc) is None:
-        return LinearNumbers(arb(0), arb(0), arb(0), ())
-    return numbers_of(osc, zero, bits)
+    return LinearNumbers(arb(0), arb(0), arb(0), ()) if linear_form(osc) is None else numbers_of(osc, zero, bits)
 
 
 def time_of(w: Any, S: Any) -> Any:

@@ -203,18 +203,17 @@ def certified_gamma(
     if wanted is not None and not 0 < wanted <= 1000:
         raise refuse("reach", reach, "a rational number > 0")
     with balls_at(BITS):
-        why, tried = "", []
+        tried: list[str] = []
         for s0 in _reaches(wanted, osc, zero):
             try:
                 relation = flights_before(osc, zero, s0)
                 _require_pressed(relation)
                 boxes = _covered(relation, ends)
             except (Undecided, InputError) as reason:
-                why = f"S <= {s0}: {reason}"
-                tried.append(why)
+                tried.append(f"S <= {s0}: {reason}")
                 continue
             return _found(osc, zero, (s0, wanted), ends, boxes, tried)
-    raise InputError(f"gamma is not certified before tau_* = {zero.tau:.12g}: {why}")
+    raise InputError(f"gamma is not certified before tau_* = {zero.tau:.12g}: {tried[-1]}")
 
 
 def flights_before(osc: Oscillator, zero: ContactZero, reach: Fraction, bits: int = BITS) -> Flights:
@@ -292,17 +291,15 @@ def phase_below(osc: Oscillator) -> Expression | None:
 def _reaches(wanted: Fraction | None, osc: Oscillator, zero: ContactZero) -> Iterator[Fraction]:
     """The reaches that are tried, from the largest."""
     if wanted is not None:
-        yield from (wanted / 2**k for k in range(7))
-        return
+        return (wanted / 2**k for k in range(7))
     if linear_form(osc) is None:
-        yield from REACHES
-        return
+        return iter(REACHES)
     numbers = numbers_of(osc, zero, BITS)
     fastest = max(
         [1e-6, abs(float(numbers.square.mid())) ** 0.5, *(abs(float(wave[0].mid())) / 4 for wave in numbers.waves)]
     )
     unit = 1 / Fraction(fastest).limit_denominator(64) if fastest > 1 / 32 else Fraction(1 / fastest)
-    yield from (unit * share for share in REACHES)
+    return (unit * share for share in REACHES)
 
 
 def _require_pressed(relation: Flights) -> None:
@@ -337,14 +334,13 @@ def _covered(relation: Flights, ends: _Ends) -> tuple[BoxProof, ...]:
 
 def _tried(relation: Flights, box: tuple[Fraction, Fraction], r: Any, patient: bool = True) -> BoxProof:
     """A proof with the first settings that allow one."""
-    why: Undecided | None = None
+    reasons: list[Undecided] = []
     for settings in TRIED if patient else TRIED[:2]:
         try:
             return prove_box(relation, box, settings, r)
         except Undecided as reason:
-            why = why or reason
-    assert why is not None
-    raise why
+            reasons.append(reason)
+    raise reasons[0]
 
 
 def ratio(j: int, r: Any, digits: int) -> tuple[Fraction, Fraction]:

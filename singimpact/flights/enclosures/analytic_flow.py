@@ -27,6 +27,7 @@ from singimpact.flights.enclosures.equation import Equation, NoHit, Refused, pro
 from singimpact.flights.enclosures.motion import CarriedMotion, Start
 from singimpact.flights.enclosures.taylor_step import around, coefficients, degree_at, drive, linear_coefficients
 from singimpact.flights.enclosures.tube import ball, upper
+from singimpact.handed_on import flint
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import RESTITUTION
 
@@ -254,10 +255,7 @@ class ShortFlights:
 
     def _discs(self, tau: Any, fastest: Any, radius: float) -> Discs | None:
         """Discs of a radius; None where no bound of x'' is shown."""
-        import flint
-
-        times = around(tau, flint.arb(radius * (1 + SHORT.box)))
-        g = self.equation.run("drive", t=times)[0]
+        g = self.equation.run("drive", t=around(tau, flint.arb(radius * (1 + SHORT.box))))[0]
         bound = (self._linear if self.equation.linear else self._picard)(g, fastest, radius)
         if bound is None or not bound.is_finite():
             return None
@@ -272,8 +270,6 @@ class ShortFlights:
 
     def _picard(self, g: Any, fastest: Any, radius: float) -> Any | None:
         """A bound of |z''| that the flight is shown to keep, as the discs that it leads to give a smaller one."""
-        import flint
-
         zero = flint.arb(0)
         pull = self.equation.run("force", x=around(zero, zero), xdot=around(zero, fastest))[0]
         bound = upper(flint.acb(g - pull)) * SHORT.room
@@ -286,8 +282,6 @@ class ShortFlights:
 
     @staticmethod
     def _proved(X: list[Any], time: float, bits: int, discs: Discs) -> tuple[Any, Any] | None:
-        import flint
-
         n, radius, window = len(X) - 1, flint.arb(discs.radius), flint.arb(time * SHORT.reach)
         left = discs.bound * radius ** (1 - n) / ((n + 1) * (1 - window / radius))
         y = flint.arb_poly([*X[1:], ball(left / n)])

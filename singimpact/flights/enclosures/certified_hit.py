@@ -26,6 +26,7 @@ from singimpact.flights.enclosures.equation import (
 )
 from singimpact.flights.enclosures.motion import CarriedMotion, Start
 from singimpact.flights.enclosures.tube import NearGraze, RootAtEnd, Tube, below, centre, divided, first_root
+from singimpact.handed_on import flint
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import period_over
 
@@ -198,8 +199,6 @@ def motion_from(
     bits, coarse : of the steps of a point, and of a set. derivative : whether columns are carried.
     framed : whether the state is carried in a frame; else as a ball. time : of the flight in doubles, 0 not known.
     """
-    import flint
-
     names = launch.names
     programs = programs_of(osc, names)
     if not framed and not names:
@@ -235,8 +234,6 @@ def _ball(tree: Expression, bits: int) -> Any:
 
 
 def _radius(size: Fraction) -> Any:
-    import flint
-
     return flint.arb(0, flint.arb(flint.fmpq(size.numerator, size.denominator)).upper()) if size else flint.arb(0)
 
 
@@ -245,8 +242,6 @@ def _phase(osc: Oscillator, tau: Expression, bits: int, names: tuple[str, ...]) 
 
     Where the period depends on a number that has a radius, no time is a whole number of periods for all its values.
     """
-    import flint
-
     plain = _ball(tau, bits)
     size = abs(float(plain.mid()))
     if osc.period is None or not size > 64 or _period_moves(osc, names):

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 from singimpact.algebra.analytic import Place, Program, Recorder
 from singimpact.algebra.expressions import Name, add, names_in, substitute
 from singimpact.algebra.precision import bits_of_balls
+from singimpact.handed_on import flint
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION
 from singimpact.oscillator.rebound import rho_of
@@ -138,7 +139,5 @@ class Equation:
         """f, f_x and f_v at rest on the wall, where f is free of t; they are all of it where f is linear."""
         key = "wall", bits_of_balls()
         if key not in self._ready:
-            import flint
-
             self._ready[key] = self.run("force", x=flint.arb(0), xdot=flint.arb(0))
         return self._ready[key]  # type: ignore[no-any-return]

@@ -53,6 +53,7 @@ from singimpact.flights.enclosures.tube import (
     speed,
     upper,
 )
+from singimpact.handed_on import flint
 from singimpact.oscillator.model import Oscillator
 
 Jet = list[Any]
@@ -250,20 +251,16 @@ class _JetFlight:
     """z and z' as jets, from step to step."""
 
     def __init__(self, osc: Oscillator, launch: Launch, bits: int, across: bool) -> None:
-        from flint import arb
-
         self.bits, self.name, self.across = bits, launch.names[0], across
-        self.gap = arb(0)
-        if osc.upper is not None:
-            self.gap = evaluate(subtract(osc.upper, osc.clearance), {}, Balls(bits))
+        self.gap = flint.arb(0) if osc.upper is None else evaluate(subtract(osc.upper, osc.clearance), {}, Balls(bits))
         self.tau, self.v0, numbers = box_of(osc, launch, bits)
         if not self.v0 > 0:
             raise Refused("the launch velocity is not shown positive")
         if osc.parametric:
             raise Refused("second derivatives of flights are not enclosed where t occurs in f")
-        self.equation, self.time = Equation(jet_programs(osc, self.name), numbers), arb(0)
+        self.equation, self.time = Equation(jet_programs(osc, self.name), numbers), flint.arb(0)
         self.law = Equation(jet_programs(osc.mirrored, self.name), numbers) if across else self.equation
-        zero, one = arb(0), arb(1)
+        zero, one = flint.arb(0), flint.arb(1)
         self.z: Jet = jet({}, zero)
         self.v: Jet = jet({0: self.v0, 2: one}, zero)
         self.last: Any = None
@@ -287,18 +284,16 @@ class _JetFlight:
 
     def _series(self) -> list[list[Any]]:
         """Taylor coefficients of each coefficient of the jet z."""
-        from flint import arb, arb_series
-
         time, n = self.tau + self.time, degree_at(self.bits)
         count = n - 1
         X = coefficients(self.equation, (time, self.z[0], self.v[0]), n)
         if not X[-1].is_finite():
             raise NotAnalytic("f or g has no power series where the flight goes")
-        zero = arb_series([0], prec=count)
-        forced = [listed(series, count) for series in self._forcing(arb_series([time, 1], prec=count))]
-        rows = [X, *([[arb(0)]] * (len(MONOMIALS) - 1))]
+        zero = flint.arb_series([0], prec=count)
+        forced = [listed(series, count) for series in self._forcing(flint.arb_series([time, 1], prec=count))]
+        rows = [X, *([[flint.arb(0)]] * (len(MONOMIALS) - 1))]
         V = [(k + 1) * coefficient for k, coefficient in enumerate(X[1:])]
-        partials = self._run("near", 3, 2, x=arb_series(X, prec=count), xdot=arb_series(V, prec=count))
+        partials = self._run("near", 3, 2, x=flint.arb_series(X, prec=count), xdot=flint.arb_series(V, prec=count))
         partials = {key: partial + zero for key, partial in partials.items()}
         by_x, by_v = (listed(partials[key], count) for key in ((1, 0, 0), (0, 1, 0)))
         z, v = jet({}, zero), jet({}, zero)  # without the coefficients that are not known yet
@@ -306,36 +301,33 @@ class _JetFlight:
             f = composed(partials, (z, v, jet({3: 1}, 0)))
             for index, monomial in enumerate(MONOMIALS):
                 if len(monomial) == degree:
-                    pull = listed(f[index], count)
-                    driven = [a - b for a, b in zip(forced[index], pull, strict=True)]
+                    driven = [a - b for a, b in zip(forced[index], listed(f[index], count), strict=True)]
                     P = response(by_x, by_v, driven, (self.z[index], self.v[index]))
                     rows[index] = P
-                    z[index] = arb_series(P, prec=count)
-                    v[index] = arb_series([(k + 1) * coefficient for k, coefficient in enumerate(P[1:])], prec=count)
+                    z[index] = flint.arb_series(P, prec=count)
+                    v[index] = flint.arb_series(
+                        [(k + 1) * coefficient for k, coefficient in enumerate(P[1:])], prec=count
+                    )
         return rows
 
     def _defect(self, series: list[list[Any]], sums: list[Any], R: Any) -> list[Any] | None:
         """A bound of the norm of the defect on a disc; None where f or g is not shown analytic on its image."""
-        from flint import acb
-
         z, v = ([around(P[order], part[order](R)) for P, part in zip(series, sums, strict=True)] for order in (0, 1))
         g = self._forcing(around(self.tau + self.time, R))
         rest = total(self._force(z, v, "near", (0, 0, 0)), scaled(g, -1))
-        if not all(acb(part).is_finite() for part in rest):
+        if not all(flint.acb(part).is_finite() for part in rest):
             return None
         return [upper(norm(rest) + sum((upper(part[2](R)) for part in sums), upper(R * 0)))]
 
     def _step(self) -> tuple[list[list[Any]], Any, Any]:
         """The polynomials of a step, the bound K of their errors, and its length."""
-        from flint import arb
-
         series = self._series()
         n = len(series[0]) - 1
         with balls_at(STEP.disc_bits):
             sums = [sums_of(column) for column in series]
             length, R, (M,) = widest_disc(series[0], lambda R: self._defect(series, sums, R), self.bits, self.last)
             self.last = R
-            slack = arb(2) ** (-self.bits // 2)
+            slack = flint.arb(2) ** (-self.bits // 2)
             for _ in range(STEP.boxes):
                 z, v = (
                     [P[order] + ball(column[order](length) + slack) for P, column in zip(series, sums, strict=True)]
@@ -346,7 +338,7 @@ class _JetFlight:
                     K = upper(M * R ** (1 - n) * (B * length + A * length**2 / 2).exp() / n)
                     if K * length**n * (1 + length) < slack:
                         return series, K, length
-                length = arb(float(length) / 2)
+                length = flint.arb(float(length) / 2)
         raise Refused("no step on which the bounds hold")
 
     def hit(self, horizon: Fraction) -> JetHit:
@@ -396,10 +388,8 @@ class _JetFlight:
 
     def _landed(self) -> JetHit:
         """The state after the hit: the jet N with z(T + N) = 0 by Taylor's formula, T the ball of the times."""
-        from flint import arb
-
-        z, v, clock = [arb(0), *self.z[1:]], self.v, self.tau + self.time
-        level = self.gap if self.across else arb(0)
+        z, v, clock = [flint.arb(0), *self.z[1:]], self.v, self.tau + self.time
+        level = self.gap if self.across else flint.arb(0)
         a = total(self._forcing(clock), scaled(self._force([level, *z[1:]], v, "near", (0, 0, 0)), -1))
         late = scaled(quotient(z, v), -1)
         late = scaled(quotient(total(z, scaled(product(late, late), a[0] / 2)), v), -1)
@@ -407,6 +397,5 @@ class _JetFlight:
         jerk = self.equation.run("forcing", t=clock)[1] - by_x * v[0] - by_v * a[0]
         landing = total(v, product(a, late), scaled(product(late, late), jerk / 2))
         landing = scaled(landing, -1) if self.across else landing
-        law = self._run("law", 2, 2, v=landing[0])
-        after = composed(law, ([0, *landing[1:]], jet({3: 1}, 0)))
-        return JetHit(total(late, jet({0: clock, 1: arb(1)}, arb(0))), after)
+        after = composed(self._run("law", 2, 2, v=landing[0]), ([0, *landing[1:]], jet({3: 1}, 0)))
+        return JetHit(total(late, jet({0: clock, 1: flint.arb(1)}, flint.arb(0))), after)

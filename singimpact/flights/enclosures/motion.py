@@ -20,6 +20,7 @@ from singimpact.algebra.precision import balls_at
 from singimpact.flights.enclosures.equation import Equation, Refused
 from singimpact.flights.enclosures.taylor_step import Column, Step, step
 from singimpact.flights.enclosures.tube import Tube, ball, below, centre, divided, height, narrowed, speed, upper
+from singimpact.handed_on import flint
 
 Pair = tuple[Any, Any]
 
@@ -76,32 +77,30 @@ class CarriedMotion:
         through: bool = False,
         clocked: bool = False,
     ) -> None:
-        from flint import arb
-
         (self.of_centre, self.equation), self.bits, self.coarse = equations, bits, coarse
         self.through, self.clocked = through or clocked, clocked
         tau, v, self.removed, self.expected = start
-        self.time, self.flown = arb(0), 0
+        self.time, self.flown = flint.arb(0), 0
         self.step: Step | None = None
         self.wide: Step | None = None
-        self.tau, self.middle_tau, self.middle = tau, tau, (arb(0), v)
+        self.tau, self.middle_tau, self.middle = tau, tau, (flint.arb(0), v)
         names = self.equation.names
         self.drives: list[int] = [] if deviations is None else [0, -1, *range(1, len(names) + 1)]
-        self.full: list[Pair] = [(arb(0), arb(int(drive == -1))) for drive in self.drives]
+        self.full: list[Pair] = [(flint.arb(0), flint.arb(int(drive == -1))) for drive in self.drives]
         self.D: list[Any] = []
         self.C: list[Pair] = []
-        self.turn: Pair = arb(1), arb(0)  # Q = ((a, -b), (b, a))
-        self.box: Pair = arb(0), arb(0)
+        self.turn: Pair = flint.arb(1), flint.arb(0)  # Q = ((a, -b), (b, a))
+        self.box: Pair = flint.arb(0), flint.arb(0)
         if coarse is not None:
-            self.middle = arb(0), centre(v)
-            self.box = arb(0), v - self.middle[1]
+            self.middle = flint.arb(0), centre(v)
+            self.box = flint.arb(0), v - self.middle[1]
         if coarse is not None and deviations is not None:
-            self.middle_tau, self.box = centre(tau), (arb(0), arb(0))
+            self.middle_tau, self.box = centre(tau), (flint.arb(0), flint.arb(0))
             self.D = [tau - self.middle_tau, v - self.middle[1], *(deviations[name] for name in names)]
             self.C = list(self.full)
         if clocked:
-            push = self.equation.acceleration(tau, v * 0, v)
-            self.earlier = -v, -push  # of the state at the time of the launch, by a later launch
+            # of the state at the time of the launch, by a later launch
+            self.earlier = -v, -self.equation.acceleration(tau, v * 0, v)
             self.apart = upper(tau - self.middle_tau)
 
     @property
@@ -132,11 +131,9 @@ class CarriedMotion:
 
     def _launches(self) -> list[Column]:
         """Derivatives that a step carries: in a frame by its first state and by what drives it, else columns."""
-        from flint import arb
-
         if self.coarse is None:
             return [Column(pair, drive) for pair, drive in zip(self.full, self.drives, strict=True)]
-        one, zero = arb(1), arb(0)
+        one, zero = flint.arb(1), flint.arb(0)
         return [
             Column((one, zero), -1),
             Column((zero, one), -1),
@@ -184,8 +181,7 @@ class CarriedMotion:
         """Columns from the beginning of the step to where its derivatives are given; without a frame those are it."""
         if self.coarse is None:
             return responses
-        drives = [drive for drive in self.drives if drive >= 0]
-        driven = dict(zip(drives, responses[2:], strict=True))
+        driven = dict(zip([drive for drive in self.drives if drive >= 0], responses[2:], strict=True))
         return [_mapped(responses, pair, driven.get(drive)) for pair, drive in zip(columns, self.drives, strict=True)]
 
     def _from_launch(self, s: Any) -> list[Pair]:

@@ -19,6 +19,7 @@ from typing import Any, NamedTuple
 from singimpact.algebra.precision import balls_at
 from singimpact.flights.enclosures.equation import Equation, NotAnalytic, Refused
 from singimpact.flights.enclosures.tube import ball, upper
+from singimpact.handed_on import flint
 
 
 @dataclass(frozen=True)
@@ -147,8 +148,6 @@ def coefficients(equation: Equation, state: tuple[Any, Any, Any], degree: int, r
     The residual of a polynomial comes from one evaluation over series; the linear equation of the correction is solved
     for the new coefficients one by one.
     """
-    from flint import arb, arb_series
-
     t, z, v = state
     g = drive(equation, t, degree)
     if equation.linear:
@@ -161,27 +160,28 @@ def coefficients(equation: Equation, state: tuple[Any, Any, Any], degree: int, r
         f, by_x, by_v = (
             listed(series, count)
             for series in equation.run(
-                "force", x=arb_series(X, prec=count), xdot=arb_series(V, prec=count), t=arb_series([t, 1], prec=count)
+                "force",
+                x=flint.arb_series(X, prec=count),
+                xdot=flint.arb_series(V, prec=count),
+                t=flint.arb_series([t, 1], prec=count),
             )
         )
         constant = all(coefficient.is_zero() for coefficient in by_v[1:])
         for k in range(m - 1, count):
-            rest = g[k] - f[k] - sum(map(arb.__mul__, by_x, X[k:m:-1]), arb(0))
+            rest = g[k] - f[k] - sum(map(flint.arb.__mul__, by_x, X[k:m:-1]), flint.arb(0))
             if not constant:
-                rest -= sum(map(arb.__mul__, by_v, V[k : m - 1 : -1] if m else V[k::-1]), arb(0))
+                rest -= sum(map(flint.arb.__mul__, by_v, V[k : m - 1 : -1] if m else V[k::-1]), flint.arb(0))
             elif k >= m:
                 rest -= by_v[0] * V[k]
             # the first ones of a mass at rest vanish exactly, where balls only contain 0
-            X.append(arb(0) if k + 2 < removed else rest / ((k + 1) * (k + 2)))
+            X.append(flint.arb(0) if k + 2 < removed else rest / ((k + 1) * (k + 2)))
             V.append((k + 2) * X[-1])
     return X
 
 
 def drive(equation: Equation, t: Any, count: int) -> list[Any]:
     """Taylor coefficients of g at a time."""
-    from flint import arb_series
-
-    return listed(equation.run("drive", t=arb_series([t, 1], prec=count))[0], count)
+    return listed(equation.run("drive", t=flint.arb_series([t, 1], prec=count))[0], count)
 
 
 def linear_coefficients(g: list[Any], force: list[Any], start: tuple[Any, Any], removed: int = 1) -> list[Any]:
@@ -191,30 +191,28 @@ def linear_coefficients(g: list[Any], force: list[Any], start: tuple[Any, Any], 
     ----------
     force : f, f_x and f_v at rest on the wall. start : z and z'. removed : as for `coefficients`.
     """
-    from flint import arb
-
     at_wall, k, d = force
     X, damped = list(start), not d.is_zero()
     for m, push in enumerate([g[0] - at_wall, *g[1:]]):
         rest = push - k * X[m]
         if damped:
             rest -= d * ((m + 1) * X[m + 1])
-        X.append(arb(0) if m + 2 < removed else rest / ((m + 1) * (m + 2)))
+        X.append(flint.arb(0) if m + 2 < removed else rest / ((m + 1) * (m + 2)))
     return X
 
 
 def column(equation: Equation, t: Any, X: list[Any], launch: Column, degree: int) -> list[Any]:
     """Taylor coefficients of a column along the polynomial with coefficients X."""
-    from flint import arb, arb_series
-
     V = [(k + 1) * coefficient for k, coefficient in enumerate(X[1:])]
     count = degree - 1
-    clock = arb_series([t, 1], prec=count)
+    clock = flint.arb_series([t, 1], prec=count)
     _, by_x, by_v, *pulls = (
         listed(series, count)
-        for series in equation.run("disc", x=arb_series(X, prec=count), xdot=arb_series(V, prec=count), t=clock)
+        for series in equation.run(
+            "disc", x=flint.arb_series(X, prec=count), xdot=flint.arb_series(V, prec=count), t=clock
+        )
     )
-    driven = [arb(0)] * count
+    driven = [flint.arb(0)] * count
     if launch.drive >= 0:
         driven = listed(equation.run("forcing", t=clock)[1 + launch.drive], count)
         driven = [a - b for a, b in zip(driven, pulls[launch.drive], strict=True)]
@@ -223,13 +221,11 @@ def column(equation: Equation, t: Any, X: list[Any], launch: Column, degree: int
 
 def response(by_x: list[Any], by_v: list[Any], driven: list[Any], start: tuple[Any, Any]) -> list[Any]:
     """Taylor coefficients of the psi with psi'' + by_x psi + by_v psi' = driven, all lists, from (psi, psi')."""
-    from flint import arb
-
     constant = all(coefficient.is_zero() for coefficient in by_v[1:])
-    P, Q = [arb(start[0]), arb(start[1])], [arb(start[1])]
+    P, Q = [flint.arb(start[0]), flint.arb(start[1])], [flint.arb(start[1])]
     for k in range(len(driven)):
-        rest = driven[k] - sum(map(arb.__mul__, by_x, P[k::-1]), arb(0))
-        rest -= by_v[0] * Q[k] if constant else sum(map(arb.__mul__, by_v, Q[::-1]), arb(0))
+        rest = driven[k] - sum(map(flint.arb.__mul__, by_x, P[k::-1]), flint.arb(0))
+        rest -= by_v[0] * Q[k] if constant else sum(map(flint.arb.__mul__, by_v, Q[::-1]), flint.arb(0))
         P.append(rest / ((k + 1) * (k + 2)))
         Q.append(rest / (k + 1))
     return P
@@ -237,21 +233,17 @@ def response(by_x: list[Any], by_v: list[Any], driven: list[Any], start: tuple[A
 
 def listed(series: Any, count: int) -> list[Any]:
     """The first coefficients of a series, or of a constant."""
-    from flint import arb, arb_series
-
-    if not isinstance(series, arb_series):
-        return [arb(series)] + [arb(0)] * (count - 1)
+    if not isinstance(series, flint.arb_series):
+        return [flint.arb(series)] + [flint.arb(0)] * (count - 1)
     values = series.coeffs()
-    return values[:count] if len(values) >= count else [*values, *[arb(0)] * (count - len(values))]
+    return values[:count] if len(values) >= count else [*values, *[flint.arb(0)] * (count - len(values))]
 
 
 def sums_of(X: list[Any]) -> tuple[Any, Any, Any]:
     """Polynomials in R that bound |P - P(0)|, |P' - P'(0)| and |P''| on the disc |s| <= R."""
-    from flint import arb_poly
-
-    first = arb_poly([0, *(upper(part) for part in X[1:])])
+    first = flint.arb_poly([0, *(upper(part) for part in X[1:])])
     second = first.derivative()
-    return first, second - arb_poly([second[0]]), second.derivative()
+    return first, second - flint.arb_poly([second[0]]), second.derivative()
 
 
 def widest_disc(
@@ -263,8 +255,6 @@ def widest_disc(
     ----------
     X : coefficients of z. defects : of z first, on a disc; None where it is refused. last : R of the step before.
     """
-    from flint import arb
-
     n = len(X) - 1
     size = upper(X[1]) + upper(X[2]) / 8 + upper(X[3]) / 64
     rates = [_root(upper(X[k]) / size, k) for k in (n - 2, n - 1, n)] if size > 0 else []
@@ -274,10 +264,10 @@ def widest_disc(
         R = min(R, STEP.grow * float(last))
     best: tuple[float, float, list[Any]] | None = None
     for _ in range(STEP.discs):
-        bounds = defects(arb(R))
+        bounds = defects(flint.arb(R))
         if bounds is not None:
             # Cauchy's bound of the cut-off at length h is about D R (h/R)^n/n: h where it is 2^-bits of the size
-            ratio = size * n / (bounds[0] * R + size * arb(2) ** -900)
+            ratio = size * n / (bounds[0] * R + size * flint.arb(2) ** -900)
             length = R * min(2.0 ** (-bits / n) * _root(ratio, n), STEP.part)
             if best is not None and length < best[0] * 1.01:
                 break
@@ -285,7 +275,7 @@ def widest_disc(
         R *= STEP.shrink
     if best is None or not best[0] > 0:
         raise NotAnalytic("f or g is analytic on no disc round the flight that was tried")
-    return arb(best[0]), arb(best[1]), best[2]
+    return flint.arb(best[0]), flint.arb(best[1]), best[2]
 
 
 def _root(value: Any, order: int) -> float:
@@ -295,16 +285,13 @@ def _root(value: Any, order: int) -> float:
 
 def around(value: Any, width: Any) -> Any:
     """A complex ball that holds all numbers within a distance of a real ball."""
-    from flint import acb
-
-    return acb(value + ball(width), ball(width))
+    return flint.acb(value + ball(width), ball(width))
 
 
 def _defects(
     equation: Equation, t: Any, X: list[Any], psi: list[list[Any]], drives: list[int], sums: list[Any], R: Any
 ) -> list[Any] | None:
     """Bounds of the defects of z and of the columns on a disc; None where f or g is not shown analytic on its image."""
-    from flint import acb
 
     def at(P: list[Any], totals: tuple[Any, Any, Any], order: int) -> Any:
         return around(P[order], totals[order](R))
@@ -318,7 +305,7 @@ def _defects(
         if drive >= 0:
             value += pulls[drive] - forced[drive]
         inside.append(value)
-    if not all(acb(value).is_finite() for value in inside):
+    if not all(flint.acb(value).is_finite() for value in inside):
         return None
     return [upper(totals[2](R)) + upper(value) for totals, value in zip(sums, inside, strict=True)]
 
@@ -333,15 +320,13 @@ def _bounded(
     bits: int,
 ) -> Step:
     """The step on which the bounds are shown to hold, shortened until they do."""
-    from flint import arb
-
     (X, psi), (length, R, defects), n = series, disc, len(series[0]) - 1
-    slack = arb(2) ** (-bits // 2)
+    slack = flint.arb(2) ** (-bits // 2)
     power = R ** (1 - n)
     for _ in range(STEP.boxes):
         names = {name: X[order] + ball(sums[0][order](length) + slack) for order, name in enumerate(("x", "xdot"))}
         by_x, by_v, *others = equation.run("box", **names, t=t + ball(length))
-        A, B = upper(arb(by_x)), upper(arb(by_v))
+        A, B = upper(flint.arb(by_x)), upper(flint.arb(by_v))
         if A.is_finite() and B.is_finite():
             grown = (B * length + A * length**2 / 2).exp() / n
             bound = upper(defects[0] * power * grown)
@@ -354,17 +339,14 @@ def _bounded(
                 if all(bend.is_finite() for bend in bends):
                     bounds = [upper((M * power + bend) * grown) for M, bend in zip(defects[1:], bends, strict=True)]
                     return Step(X, bound, psi, bounds, length, R)
-        length = arb(float(length) / 2)
+        length = flint.arb(float(length) / 2)
     raise Refused("no step on which the bounds hold")
 
 
 def _second_derivatives(parts: list[Any]) -> tuple[Any, list[Any]]:
     """|f_xx| + 2 |f_xv| + |f_vv|, and |f_px| + |f_pv| of t and each name."""
-    from flint import arb
-
-    sizes = [upper(arb(part)) for part in parts]
-    mixed = [sizes[k] + sizes[k + 1] for k in range(3, len(sizes), 2)]
-    return sizes[0] + 2 * sizes[1] + sizes[2], mixed
+    sizes = [upper(flint.arb(part)) for part in parts]
+    return sizes[0] + 2 * sizes[1] + sizes[2], [sizes[k] + sizes[k + 1] for k in range(3, len(sizes), 2)]
 
 
 def _bend(

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from singimpact.flights.enclosures.equation import Refused
+from singimpact.handed_on import flint
 
 
 class Tube:
@@ -23,8 +24,6 @@ class Tube:
     __slots__ = ("_whole", "errors", "polynomial")
 
     def __init__(self, polynomial: Any, errors: tuple[tuple[Any, int], ...]) -> None:
-        import flint
-
         self.polynomial, self.errors, self._whole = polynomial, errors, polynomial
         # an error e s^k is a ball in the coefficient of s^k: one evaluation then gives polynomial and errors
         for e, k in errors:
@@ -36,23 +35,17 @@ class Tube:
 
 def height(coefficients: list[Any], bound: Any) -> Tube:
     """z on a step: |z - P| <= K s^(n+1)/(n+1), n the degree of P."""
-    import flint
-
     n = len(coefficients) - 1
     return Tube(flint.arb_poly(coefficients), ((bound / (n + 1), n + 1),))
 
 
 def speed(coefficients: list[Any], bound: Any) -> Tube:
     """z' on a step: |z' - P'| <= K s^n."""
-    import flint
-
     return Tube(flint.arb_poly(coefficients).derivative(), ((bound, len(coefficients) - 1),))
 
 
 def divided(tube: Tube, slope: Tube, removed: int) -> tuple[Tube, Tube]:
     """y = z/s^p and y' = (z' - p z/s)/s^p, where the first p coefficients of z are exactly 0."""
-    import flint
-
     y = flint.arb_poly([tube.polynomial[k] for k in range(removed, tube.polynomial.degree() + 1)])
     value = tuple((e, k - removed) for e, k in tube.errors)
     rate = tuple((e, k - removed) for e, k in slope.errors)
@@ -72,15 +65,11 @@ def upper(value: Any) -> Any:
 
 def ball(bound: Any) -> Any:
     """The ball round 0 of a radius."""
-    import flint
-
     return flint.arb(0, upper(bound))
 
 
 def centre(value: Any) -> Any:
     """The midpoint of a ball, exact."""
-    import flint
-
     return flint.arb(value.mid())
 
 
@@ -130,9 +119,7 @@ def first_root(value: Tube, slope: Tube, length: Any, bits: int) -> Any | None:
     -----
     Existence is a change of sign where the slope is negative; Newton's method narrows what is already shown.
     """
-    from flint import arb
-
-    stack, least = [(arb(0), length)], length * arb(2) ** (-2 * bits // 3)
+    stack, least = [(flint.arb(0), length)], length * flint.arb(2) ** (-2 * bits // 3)
     for _ in range(ROOT.pieces):
         if not stack:
             return None

@@ -81,8 +81,7 @@ def kept_up(osc: Oscillator, v: Array) -> Array:
     >>> kept_up(Oscillator("x + x**3/10 + 1000*xdot", "cos(t)", -1, 1), np.array([0.0, 1.0])).tolist()
     [False, True]
     """
-    fastest = fastest_kept(osc)
-    return np.asarray((v > 0) & (v <= fastest))
+    return np.asarray((v > 0) & (v <= fastest_kept(osc)))
 
 
 @lru_cache(maxsize=256)
