@@ -8,7 +8,6 @@ ones too.
 
 import inspect
 import json
-from collections.abc import Iterable
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
@@ -253,15 +252,16 @@ def model_in_javascript(osc: Oscillator) -> str:
     >>> [line for line in text.splitlines() if line.startswith("const constants_of")]
     ['const constants_of = (given) => [given["w"], (-1 * given["w"]), 1];']
     """
-    kernels = [text for module in KERNELS for text in _functions(module)]
+    kernels = {name: text for module in KERNELS for name, text in _functions(module).items()}
+    kernels.pop("disc")  # that of x'' = 0
     sides = [osc] if osc.upper is None else [osc, osc.mirrored]
     # kernels in a scope of their own: the page has functions of the same names
     return "\n".join(
         [
             as_script("ACROSS", ACROSS),
-            *_functions(radii),
+            *_functions(radii).values(),
             f"const flights_with = ({', '.join(EMITTED)}) => {{",
-            *kernels,
+            *kernels.values(),
             *(f"const {name} = {other};" for name, other in BOUND.items()),
             "return { taylor_flight, follow };",
             "};",
@@ -271,8 +271,8 @@ def model_in_javascript(osc: Oscillator) -> str:
     )
 
 
-def _functions(module: ModuleType) -> Iterable[str]:
-    return translated(inspect.getsource(module)).values()
+def _functions(module: ModuleType) -> dict[str, str]:
+    return translated(inspect.getsource(module))
 
 
 def _side(osc: Oscillator) -> str:

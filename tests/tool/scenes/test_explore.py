@@ -396,6 +396,16 @@ def test_orbits_between_two_walls_are_those_of_python(opened, name, wall):
     assert {1} < {*np.concatenate([found["wall"] for found in shown])}
 
 
+def test_steps_are_bounded_by_the_recurrence_of_the_model(opened):
+    """`steps.disc` is that of x'' = 0 and stays out of the page."""
+    counted = """let calls = 0;
+    const { coefficients } = SIDES[0], fly = flyer(MODEL.clearance, MODEL.r, MODEL.parameters, MODEL.period);
+    const { taylor_flight } = flights_with(coefficients, () => { calls += 1; return [0, 0]; });
+    taylor_flight([0.3], 0.5, 1, NaN, fly.p, fly.rules, fly.work, []);
+    return calls"""
+    assert opened(TWO_WALLS["Duffing"]).execute_script(counted) > 0
+
+
 def test_both_walls_and_their_impacts_are_drawn(opened):
     model = TWO_WALLS["Duffing"]
     browser = opened(model, between=None, steps=3)
