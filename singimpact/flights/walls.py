@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from functools import partial
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -15,6 +14,8 @@ from singimpact.flights.states import as_written
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Wall, status_array, wall_of
+
+R = TypeVar("R")
 
 
 def wall_codes(osc: Oscillator, wall: Any) -> Array:
@@ -38,12 +39,12 @@ def wall_codes(osc: Oscillator, wall: Any) -> Array:
 
 
 def at_walls(
-    fly: Callable[..., Any],
+    fly: Callable[..., R],
     osc: Oscillator,
     wall: Any,
     columns: tuple[Any, ...],
     out: Mapping[str, Array] | None = None,
-) -> Any:
+) -> R:
     """The result of `fly(model, *columns)` for states at walls, in the coordinates of the model.
 
     Parameters
@@ -88,15 +89,7 @@ def each_wall(osc: Oscillator, xdot: Array) -> list[tuple[Oscillator, Array]]:
     return [(osc, np.flatnonzero(~above)), (osc.mirrored, np.flatnonzero(above))]
 
 
-def shared_out(fly: Callable[..., Any], osc: Oscillator, wall: Any, states: tuple[Any, ...], options: Any) -> Any:
-    """`at_walls` of a method of tau and v, which may be given by their names, and of options."""
-    columns = (*states, *(options.pop(name) for name in ("tau", "v")[len(states) :]))
-    if wall is None:
-        return fly(osc, *columns, **options)
-    return at_walls(partial(fly, **options), osc, wall, columns, options.get("out"))
-
-
-def turned(result: Any, out: Mapping[str, Array] | None = None) -> Any:
+def turned(result: R, out: Mapping[str, Array] | None = None) -> R:
     """A result of the model with x -> -x in the coordinates of the model; arrays of the caller are turned in place."""
     fields = vars(result)
     if fields.get("wall") is not None:
