@@ -188,7 +188,7 @@ class LinearFamily(Family):
         super().__init__(osc, over)
         clearance: Any = Name(CLEARANCE) if CLEARANCE in over else osc.clearance
         steady = add(form.constant, negate(multiply(form.stiffness, clearance)))
-        waves = [part for wave in form.harmonics for part in (wave.rate, wave.phase, wave.cosine, wave.sine)]
+        waves = [tree for wave in form.harmonics for tree in (wave.rate, wave.phase, wave.cosine, wave.sine)]
         self._trees = [self._tree(tree) for tree in (form.damping, form.stiffness, steady, *waves)]
         self._known = [
             self._number(entry, {}) if names_in(entry[0]).isdisjoint(over) else None for entry in self._trees

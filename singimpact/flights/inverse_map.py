@@ -102,15 +102,15 @@ def _turned(states: States) -> Array:
 
 def _speeds(osc: Oscillator, states: States, digits: int) -> Array:
     """U with rho(-U) = v, as an exact number where rho is -r v; None where no velocity rebounds to v."""
-    found = np.empty(states.v.size, dtype=object)
+    speeds = np.empty(states.v.size, dtype=object)
     if not names_in(osc.restitution):
         inverse = power(osc.restitution, number(-1))
-        found[:] = [multiply(states.exact_v(index), inverse) for index in range(found.size)]
-        return found
+        speeds[:] = [multiply(states.exact_v(index), inverse) for index in range(speeds.size)]
+        return speeds
     doubles = speed_before(osc, states.v)
     for index in np.flatnonzero(~np.isnan(doubles)).tolist():
-        found[index] = sharpened(osc, states.exact_v(index), float(doubles[index]), digits)
-    return found
+        speeds[index] = sharpened(osc, states.exact_v(index), float(doubles[index]), digits)
+    return speeds
 
 
 def _step(states: States, hit: Any, fields: dict[str, Any], dead: Array) -> Step:

@@ -34,7 +34,7 @@ def constants_of(osc: Oscillator, linear: bool = True) -> tuple[Expression, ...]
     # the largest rate is only a scale, so a double of it is enough
     scale = max(abs(damping), abs(stiffness) ** 0.5, *(abs(as_float(wave.rate)) for wave in form.harmonics), 0.0)
     numbers = osc.clearance, form.damping, form.stiffness, at_rest(form, osc.clearance), Number(Fraction(scale))
-    return (*numbers, *(part for wave in form.harmonics for part in (wave.rate, wave.cosine, wave.sine)))
+    return (*numbers, *(tree for wave in form.harmonics for tree in (wave.rate, wave.cosine, wave.sine)))
 
 
 @lru_cache(maxsize=256)

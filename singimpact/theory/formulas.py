@@ -343,16 +343,16 @@ def arc_in_numbers(order: int, j: int, model: Any, tau: Any = None) -> tuple[Pow
     where = ending_gamma(place(model, j, tau)) if j else place(model, j, tau)
     rough = curve_at(where, order + j + TRUST.further, DOUBLES)
 
-    def doubles(found: InvariantCurve, _: int) -> list[PowerSeries]:
+    def doubles(curve: InvariantCurve, _: int) -> list[PowerSeries]:
         return [
             PowerSeries(
                 "sigma",
                 order,
-                {n: as_double(ball) for n, ball in getattr(found, part).items() if n <= order},
+                {n: as_double(ball) for n, ball in getattr(curve, name).items() if n <= order},
                 DOUBLE,
-                {n: abs(float(value)) for n, value in getattr(rough, part).items() if n > order},
+                {n: abs(float(value)) for n, value in getattr(rough, name).items() if n > order},
             )
-            for part in ("graph", "motion")
+            for name in ("graph", "motion")
         ]
 
     graph, motion = with_digits(
