@@ -71,7 +71,8 @@ def at_walls(
         fly(model, *(column.ravel()[at] for column in states))
         for model, at in zip((osc, osc.mirrored), chosen, strict=True)
     ]
-    return _together([parts[0], turned(parts[1])], chosen, codes.shape)
+    both: R = _together([parts[0], turned(parts[1])], chosen, codes.shape)
+    return both
 
 
 def each_wall(osc: Oscillator, xdot: Array) -> list[tuple[Oscillator, Array]]:

@@ -3,10 +3,10 @@
 import copy
 
 import pytest
+from second_program import renewed
 
 import singimpact as si
 from singimpact.certificates import Certificate
-from singimpact.certificates.checker import digest_of
 from singimpact.inputs import InputError
 
 UNEVEN = si.linear("1.7", "-0.3", "0.6", damping="0.1", upper=("0.35", "0.5"))
@@ -15,9 +15,8 @@ DAMPED = si.ImpactOscillator("x + xdot/10", "A*cos(1.7*t)", "-0.3", "0.6", {"A":
 
 def refused(content):
     """The reason for which a changed file is refused, its digest written anew."""
-    content["digest"] = digest_of(content)
     with pytest.raises(InputError, match="the certificate is refused") as caught:
-        Certificate(content).check()
+        Certificate(renewed(content)).check()
     return str(caught.value)
 
 
