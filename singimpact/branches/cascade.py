@@ -5,8 +5,6 @@ changes where an impact falls exactly on the end of gamma.  Each impact multipli
 coordinates of the blow-up, so the distances of these edges shrink by mu(r).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property

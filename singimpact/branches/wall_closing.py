@@ -4,8 +4,6 @@ A flight from wall s to wall s' is one of the model whose lower wall is s.  It e
 both walls, and its velocity rebounds by the law of s'.  Everything else is as with one wall.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """States at two walls: those of the upper wall are flown by the model with x -> -x, and their results turned back."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
