@@ -173,7 +173,7 @@ def family(osc: Oscillator, over: Sequence[str] = ()) -> Family:
     return _family(osc, tuple(over))
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=64, typed=True)
 def _family(osc: Oscillator, over: tuple[str, ...]) -> Family:
     form = form_of(osc.f, osc.g)
     return SteppedFamily(osc, over) if form is None else LinearFamily(osc, over, form)

@@ -291,7 +291,7 @@ def _with_values(osc: Oscillator, field: str, keep: frozenset[str]) -> Expressio
     return substitute(tree, {name: value for name, value in osc.parameters.items() if name not in keep})
 
 
-@lru_cache(maxsize=256)
+@lru_cache(maxsize=256, typed=True)
 def _mirrored(osc: Oscillator) -> Any:
     if osc.upper is None:
         raise refuse("upper", None, "a model with two walls: x -> -x puts the wall of this one above")

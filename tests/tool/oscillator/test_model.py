@@ -6,10 +6,11 @@ import re
 import pytest
 import sympy
 
+import singimpact as si
 from singimpact.algebra import as_float
 from singimpact.impact_oscillator import ImpactOscillator, read_model
 from singimpact.inputs import InputError
-from singimpact.oscillator import fields_of
+from singimpact.oscillator import Oscillator, fields_of
 
 DUFFING = {"f": "x + 0.1*xdot + 0.3*x**3", "g": "cos(omega*t)", "clearance": "0.3", "restitution": "0.6"}
 
@@ -122,3 +123,15 @@ def test_abs_parses_and_is_refused_where_smoothness_is_needed():
     osc = ImpactOscillator("x + abs(xdot)*xdot", "cos(2*t)", "0.3", "0.5")
     with pytest.raises(InputError, match="abs"):
         osc.impact_map(1.2, 0.01)
+
+
+@pytest.mark.parametrize("first", [Oscillator, ImpactOscillator])
+def test_results_hold_a_model_of_the_kind_that_was_asked(first):
+    """Though another of the same text, which is equal, was studied just before."""
+    text = "x", "cos(1.7*t)", "-0.31", "0.6"
+    for kind in (first, Oscillator, ImpactOscillator):
+        between = kind(*text, upper="0.4")
+        assert type(between.mirrored) is type(between.one_wall("upper")) is kind
+        (orbit, *_) = si.periodic(kind(*text), 1, 1)
+        branch = si.branch(orbit, "restitution", between=("0.55", "0.65"))
+        assert type(orbit.oscillator) is type(branch.oscillator) is type(branch.orbit(0).oscillator) is kind
