@@ -119,7 +119,7 @@ class Event(Result):
         if not self.described.proof:
             *names, last = (kind.name for kind in KINDS if kind.proof)
             raise InputError(
-                f"{self!r} is not certified: no proof covers a {self.kind}, only a {', '.join(names)} or "
+                f"{self!r} is not certified: no proof covers an event of this kind, only a {', '.join(names)} or "
                 f"{last}{self._instead()}"
             )
         if not (touches or self.orbit.n):

@@ -73,7 +73,9 @@ def pitchfork():
 
 
 def test_a_pitchfork_has_no_certificate(pitchfork) -> None:
-    with pytest.raises(InputError, match=r"no proof covers a pitchfork.* the period doubling of the .1, 1. orbits"):
+    with pytest.raises(
+        InputError, match=r"no proof covers an event of this kind.* the period doubling of the .1, 1. orbits"
+    ):
         pitchfork.certified()
     # the doubling that it names is certified, and lies there
     (half,) = pitchfork.others()
