@@ -287,10 +287,9 @@ class ZarrStore(InMemory):
         rows = max(1, min(FILES.rows, FILES.bytes // row))
         group = self.zarr.open_group(self.part, mode="a")
         self.dtype = values.dtype
-        shape = (max(self.total, len(values)), *values.shape[1:])
         self.array = group.create_array(
             "result",
-            shape=shape,
+            shape=(max(self.total, len(values)), *values.shape[1:]),
             chunks=(rows, *(max(1, side) for side in values.shape[1:])),
             dtype=values.dtype,
             overwrite=True,

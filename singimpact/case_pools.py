@@ -76,8 +76,7 @@ def _stacked(function: Function, values: list[Any]) -> Array:
     try:
         return np.asarray(values)
     except ValueError:
-        shapes = sorted({np.shape(value) for value in values})
-        told = " and ".join(map(str, shapes[:2]))
+        told = " and ".join(map(str, sorted({np.shape(value) for value in values})[:2]))
         raise InputError(
             f"{named(function)} gives results of shapes {told}: give arrays of one shape for all cases"
         ) from None

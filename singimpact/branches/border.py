@@ -375,10 +375,9 @@ def _with_digits(rough: BorderOrbit, digits: int) -> BorderOrbit:
         return replace(rough, notes=(*rough.notes, f"not resolved to {digits} digits: the number is a double's"))
     notes = rough.notes if precise.certified is not None else (*rough.notes, precise.note)
     exact: Fraction = precise.exact
-    model = rough.returned.releases.model(exact)
     return replace(
         rough,
-        oscillator=model,
+        oscillator=rough.returned.releases.model(exact),
         parameter=precise.value,
         error=precise.error,
         certified=precise.certified,

@@ -229,8 +229,7 @@ def _followed(flow: AnalyticFlow, times: tuple[float, float], entry: int) -> tup
     ----------
     times : of the release and of that zero, in doubles. entry : the number of the impact.
     """
-    zeros = [_rising_zero(flow, time) for time in times]
-    start, end = zeros
+    start, end = (_rising_zero(flow, time) for time in times)
     if start is None or end is None:
         return None
     time, v, removed = start, flow.number(Fraction(0)), 3

@@ -84,11 +84,10 @@ class Branch(OfImpacts):
 
     def as_dict(self) -> dict[str, Any]:
         """n, k, the arrays of points, events and notes."""
-        points = {name: getattr(self, name) for name in POINTS}
         return {
             "n": self.n,
             "k": self.k,
-            "points": points,
+            "points": {name: getattr(self, name) for name in POINTS},
             "events": [event.as_dict() for event in self.events],
             "notes": list(self.notes),
         }
@@ -238,8 +237,7 @@ def _checked(orbit: PeriodicOrbit) -> tuple[Oscillator, Array]:
         closing = closing_of(orbit.oscillator, (), orbit.k, ())
         span = float(np.asarray(orbit.tau, dtype=float)[0])
         # from its lowest place back to time 0
-        values = {CLEARANCE: float(orbit.x[0])}
-        end = closing.family.end(values, span, float(orbit.v[0]), -span)
+        end = closing.family.end({CLEARANCE: float(orbit.x[0])}, span, float(orbit.v[0]), -span)
         return orbit.oscillator, np.array([float(orbit.x[0]) + end.place[0], end.place[1]])
     return orbit.oscillator, point_of(closing_of(orbit.oscillator, orbit.word, orbit.k, ()), orbit)
 

@@ -108,8 +108,7 @@ def _alternating(once: AnyClosing, twice: AnyClosing, at: Array) -> list[Periodi
     scales[-1] = max(abs(parameter), 1e-3)
     curve = Curve(Equations(twice), scales, 10 * APART)
     tangent = moved / scales
-    start = Point(point, tangent / np.linalg.norm(tangent))
-    corrected = curve.beyond(start, APART)
+    corrected = curve.beyond(Point(point, tangent / np.linalg.norm(tangent)), APART)
     return [] if corrected is None else [orbit_of(twice, corrected[0].at)]
 
 

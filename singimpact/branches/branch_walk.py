@@ -136,8 +136,7 @@ class BranchWalk(OrbitCurve):
         if not isinstance(self.closing, Closing):
             return ""
         period = self.closing.period(where.at)
-        times = [flight[3] for flight in self.closing.flights(where.at)]
-        if min(times) < 1e-3 * period:
+        if min(flight[3] for flight in self.closing.flights(where.at)) < 1e-3 * period:
             return "two impacts meet: a flight shrinks to nothing"
         return ""
 
@@ -252,14 +251,12 @@ class BranchWalk(OrbitCurve):
     def _event_row(
         self, kind: EventKind, point: Point, impact: int = 0, time: float = np.nan, other: PeriodicOrbit | None = None
     ) -> Row:
-        seen = self._visible(point.at, SETTINGS.located)
-        orbit = orbit_of(self.closing, point.at, seen)
+        orbit = orbit_of(self.closing, point.at, self._visible(point.at, SETTINGS.located))
         value = float(point.at[-1])
         impact %= max(self.closing.n, 1)  # flights between two walls are looked at from both
         remark = kind.remark(orbit, float(point.at[impact]), value)
         self.notes += [remark] if remark else []
-        event = Event(kind.name, value, orbit, 0, impact, time, self.over, other)
-        return self.row(point, SETTINGS.located, event)
+        return self.row(point, SETTINGS.located, Event(kind.name, value, orbit, 0, impact, time, self.over, other))
 
 
 # ---- points in the user's cache

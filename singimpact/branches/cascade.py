@@ -323,8 +323,7 @@ def cascade(returned: Return, osc: Oscillator, border: tuple[Any, Any, float], d
     else:
         centre, flights = exact("parameter", value), _InDigits(returned, digits)
         wrong = exact("error", error) + abs(centre) / 10**digits
-    search = _Edges(returned, flights, centre, wrong)
-    edges, note = search.edges(scale)
+    edges, note = _Edges(returned, flights, centre, wrong).edges(scale)
     places = [edge for _, edge in edges]
     distances = [abs(edge - centre) for edge in places]
     pairs = list(pairwise(distances))

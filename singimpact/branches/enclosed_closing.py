@@ -90,8 +90,7 @@ class ClosingBoxes:
             ways = [first for first, end in self._ends(tau, v, visible=False) if self._may_close(v, end)]
             if ways[0] is None:
                 return [float(tau.mid()), float(v.mid())]
-            after = self._after(ways[0].speed)[0]
-            return [float(part.mid()) for part in (tau, ways[0].time, v, after)]
+            return [float(part.mid()) for part in (tau, ways[0].time, v, self._after(ways[0].speed)[0])]
 
     def _may_close(self, v: Any, end: Met) -> bool:
         return end.height.contains(0) and (self._after(end.speed)[0] - v).contains(0)  # type: ignore[no-any-return]

@@ -161,7 +161,6 @@ def _enclosed(
     least = min(radius / unit for radius, unit in zip(own, between.radii(Fraction(1)), strict=True))
     unique = operator.unique_within(at, step, least)
     shown = [(_shown(tau, digits), _shown(v, digits)) for tau, v in between.states(tight)]
-    wedges = (between.leaving(at[0], own[0]).slope, between.coming(at[-1], own[-1]).slope)
     return EnclosedCrossing(
         *shown[position],
         _shown(angle, digits),
@@ -172,7 +171,7 @@ def _enclosed(
         leave.orbit,
         come.orbit,
         leave.saddle.oscillator,
-        wedges,
+        (between.leaving(at[0], own[0]).slope, between.coming(at[-1], own[-1]).slope),
     )
 
 

@@ -118,8 +118,7 @@ def enclosed_event(kind: str, orbit: PeriodicOrbit, over: str, parameter: float,
         return f"an impact has the velocity {speeds.min():.6g}"
     if orbit.oscillator.parametric:
         return f"f = {orbit.oscillator.f} depends on t: second derivatives of flights are enclosed for f in x and xdot"
-    bits = ceil((digits + SETTINGS.most) * BITS_A_DIGIT) + 64
-    with balls_at(bits):
+    with balls_at(ceil((digits + SETTINGS.most) * BITS_A_DIGIT) + 64):
         try:
             if kind_of(kind).touches:
                 return _touching(kind, orbit, over, parameter, digits)
@@ -157,13 +156,12 @@ def _touching(kind: str, orbit: PeriodicOrbit, over: str, parameter: float, digi
         closing.first_hits(point, own)
         unique = operator.unique_within(point, step, own)
         tau, *rest = _numbers(closing.balls, point, tight.offsets, digits)
-        rested = from_ball(closing.balls.rational(Fraction(0)), digits)
         return EnclosedEvent(
             kind,
             over,
             rest[-1],
             (tau, *rest[:-1:2]),
-            (rested, *rest[1:-1:2]),
+            (from_ball(closing.balls.rational(Fraction(0)), digits), *rest[1:-1:2]),
             unique,
             kind_of(kind).proof,
             None,
@@ -311,8 +309,7 @@ class _Curve:
         while True:
             try:
                 rate = rate_over(self.kind, closing, operator, near, radius)
-                held = operator.image(near, step, radius, radius / SETTINGS.reach)
-                if held is not None and (rate > 0 or rate < 0):
+                if operator.image(near, step, radius, radius / SETTINGS.reach) is not None and (rate > 0 or rate < 0):
                     return radius
             except (ArithmeticError, ValueError):  # refused, or a matrix that may be singular, over so wide a box
                 pass

@@ -77,12 +77,11 @@ class EventCurve(OfImpacts):
 
     def as_dict(self) -> dict[str, Any]:
         """Kind, n, k, the arrays of points, points of codimension two and notes."""
-        points = {name: getattr(self, name) for name in ("parameters", "tau", "v", "visible")}
         return {
             "kind": self.kind,
             "n": self.n,
             "k": self.k,
-            "points": points,
+            "points": {name: getattr(self, name) for name in ("parameters", "tau", "v", "visible")},
             "special": [point.as_dict() for point in self.special],
             "notes": list(self.notes),
         }
@@ -95,8 +94,7 @@ class EventCurve(OfImpacts):
     def table(self) -> dict[str, Array]:
         """One row for each point: both parameters, the states, visible."""
         numbers = dict(zip(self.over, self.parameters.T, strict=True))
-        states = numbered("tau", self.tau) | numbered("v", self.v)
-        return numbers | states | {"visible": self.visible.astype(int)}
+        return numbers | numbered("tau", self.tau) | numbered("v", self.v) | {"visible": self.visible.astype(int)}
 
     def __repr__(self) -> str:
         lines = [

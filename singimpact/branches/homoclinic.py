@@ -334,7 +334,6 @@ class _Search:
         index = int(np.argmax(self._distances(states)))
         error = size + max(self.unstable.error, self.stable.error)
         tau, v = states[index].tolist()
-        ends = (float(s[0]), float(s[1]))
         return Crossing(
             tau,
             v,
@@ -344,7 +343,7 @@ class _Search:
             index,
             residual,
             error,
-            ends,
+            (float(s[0]), float(s[1])),
             self.unstable.saddle,
             self.stable.saddle,
         )

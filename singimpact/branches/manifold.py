@@ -123,12 +123,11 @@ class Manifold(Result):
     def as_dict(self) -> dict[str, Any]:
         """Of each vertex the piece, tau, v and mark (empty where there is none); length, flights and notes."""
         points = np.concatenate([piece.points for piece in self.pieces]) if self.pieces else np.empty((0, 2))
-        marks = [mark for piece in self.pieces for mark in _names(piece)]
         return {
             "piece": np.repeat(np.arange(1, len(self.pieces) + 1), [len(piece) for piece in self.pieces]),
             "tau": points[:, 0],
             "v": points[:, 1],
-            "mark": np.array(marks, dtype=object),
+            "mark": np.array([mark for piece in self.pieces for mark in _names(piece)], dtype=object),
             "stable": self.stable,
             "multiplier": self.multiplier,
             "length": self.length,
@@ -361,8 +360,7 @@ class _Grown:
         are one flight, up to a graze.
         """
         slow, fast = sides[np.argsort(sides[:, 1])]
-        again = self._step(slow[None], image)[0]
-        away = (again - fast) / self.window.sides
+        away = (self._step(slow[None], image)[0] - fast) / self.window.sides
         away[0] -= np.rint(away[0])
         return bool(np.hypot(*away) < SETTINGS.touching * self.window.resolution)
 
@@ -394,8 +392,7 @@ class _Grown:
         for number in range(len(self.arc.sides)):
             piece = self._first(0.0, self._inner(number))
             for generation in range(self.recurs):
-                image = Piece(piece.s, self.carried.image(piece.s, generation), generation)
-                chain = [self.carried.refined(image)]
+                chain = [self.carried.refined(Piece(piece.s, self.carried.image(piece.s, generation), generation))]
                 chains.append(chain)
                 open_[number, generation] = chain
         for number, piece in self.done:

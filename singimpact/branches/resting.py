@@ -104,8 +104,7 @@ def _at_its_lowest(moving: Family, osc: Oscillator, state: tuple[float, float], 
 def free_orbit_at(closing: FreeClosing, point: Array) -> PeriodicOrbit:
     """The orbit of a closed point x, x' at time 0 and numbers."""
     osc = closing.family.oscillator(closing.values(point))
-    moving = family(osc, (CLEARANCE,))
-    found = _at_its_lowest(moving, osc, (float(point[0]), float(point[1])), closing.k)
+    found = _at_its_lowest(family(osc, (CLEARANCE,)), osc, (float(point[0]), float(point[1])), closing.k)
     if found is None:
         raise ArithmeticError("an orbit without a lowest place")
     return found

@@ -80,12 +80,11 @@ def orbit_at(closing: Closing, point: Array, osc: Oscillator | None = None, seen
     order = [(first + i) % n for i in range(n)]
     tau = launches[first] + np.concatenate([[0.0], np.cumsum(times[order])[:-1]])
     seen = visible(closing, point, osc) if seen is None else seen
-    miss = float(np.abs(loop.miss).max())
     return PeriodicOrbit(
         tau,
         speeds[order],
         _plain(loop.multipliers(partial(closing.product, point))),
-        miss,
+        float(np.abs(loop.miss).max()),
         np.int8(Status.hit),
         osc,
         n,

@@ -165,8 +165,7 @@ def phases_and_speeds(osc: Oscillator, k: int) -> tuple[Array, Array] | None:
         return None
     angles = _refined(_near(total), total, size)
     tau = np.mod(angles, 2 * np.pi) * period / (2 * np.pi)
-    powers = np.exp(1j * np.outer(angles, np.arange(-size, size + 1)))
-    parts = (powers @ series.T).real
+    parts = (np.exp(1j * np.outer(angles, np.arange(-size, size + 1))) @ series.T).real
     row = int(np.argmax(np.abs(by_v))) if r else 1
     return tau, -parts[:, row] / by_v[row] + 0.0
 
@@ -367,8 +366,7 @@ def _solved(slope: Array, miss: Array) -> tuple[Array, Array]:
     regular = (size > 0) & (np.abs(np.linalg.det(slope / scale)) > 1e-25)
     steps = np.full(miss.shape, np.nan)
     if regular.any():
-        scaled = miss[:, :, None] / scale
-        steps[regular] = np.linalg.solve((slope / scale)[regular], scaled[regular])[:, :, 0]
+        steps[regular] = np.linalg.solve((slope / scale)[regular], (miss[:, :, None] / scale)[regular])[:, :, 0]
     return steps, regular & np.isfinite(steps).all(axis=1)
 
 

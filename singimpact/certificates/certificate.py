@@ -172,12 +172,11 @@ def _of_orbit(orbit: EnclosedOrbit) -> dict[str, Any]:
     _at_walls(states, orbit.word)
     precise = [pair for pair in orbit.multipliers or () if pair[0].digits > 2 * LOST]  # others say next to nothing
     multipliers = [{"real": _wider(real), "imaginary": _wider(imaginary)} for real, imaginary in precise]
-    unique = min(orbit.unique_within, max(UNIQUE, 4 * widest))
     return {
         "period": str(orbit.oscillator.period),
         "periods": str(orbit.k),
         "states": states,
-        "unique_within": str(unique),
+        "unique_within": str(min(orbit.unique_within, max(UNIQUE, 4 * widest))),
         "multipliers": multipliers,
     }
 

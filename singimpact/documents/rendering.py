@@ -50,8 +50,7 @@ def lines_of(formula: str, limit: float = PAGE.line) -> list[str]:
     lines: list[str] = []
     current = ""
     for piece in _fitting(formula, limit - PAGE.indent):
-        room = limit - (PAGE.indent if lines else 0)
-        if current.strip() and width(current + piece) > room:
+        if current.strip() and width(current + piece) > limit - (PAGE.indent if lines else 0):
             lines.append(current.strip())
             current = ""
         current += piece

@@ -83,10 +83,9 @@ def _stairs(cascade: Cascade, axes: Any) -> None:
     distance = np.array(cascade.distance, dtype=float)
     # beyond the first edge one impact less, beyond the last one as long as the window before
     places = np.concatenate([[distance[0] ** 2 / distance[1]], distance, [distance[-1] ** 2 / distance[-2]]])
-    numbers = np.concatenate([[cascade.impacts[0] - 1], cascade.impacts])
     axes.plot(
         np.repeat(places, 2)[1:-1],
-        np.repeat(numbers, 2),
+        np.repeat(np.concatenate([[cascade.impacts[0] - 1], cascade.impacts]), 2),
         color=BLACK,
         linewidth=1.0,
         zorder=2,

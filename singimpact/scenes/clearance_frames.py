@@ -278,7 +278,8 @@ def _gammas(surface: ImpactSurface, size: float) -> list[Curve]:
         swan = point.kind == "degenerate" and acceleration(surface.model, np.array([tau]), 2)[0] < 0
         if point.kind == "gamma" or swan:
             frame = Window((low - turns, high - turns), (0.0, size), surface.window.resolution)
-            for curve in grown_gamma(surface.model, frame, point.tau, SETTINGS.trust):
-                moved = curve.points + np.array([turns, 0.0])
-                curves.append(Curve("gamma", moved, curve.axes, curve.marks))
+            curves += [
+                Curve("gamma", curve.points + np.array([turns, 0.0]), curve.axes, curve.marks)
+                for curve in grown_gamma(surface.model, frame, point.tau, SETTINGS.trust)
+            ]
     return curves

@@ -279,9 +279,8 @@ def _side(osc: Oscillator) -> str:
     """The recurrence of f and g, the rebound law and the numbers of a model with its flights, as one expression."""
     flow = recurrence_of(osc)
     text, law = _rebound(osc)
-    values = {name: as_float(value) for name, value in osc.parameters.items()}
     model = {
-        "parameters": values,
+        "parameters": {name: as_float(value) for name, value in osc.parameters.items()},
         "numbers": numbers_of_flow(osc, flow).tolist(),
         "rows": flow.rows,
         "order": degree_for(2.0**-52),

@@ -121,8 +121,7 @@ def _of_surface(name: str) -> Callable[[Results], list[Curve]]:
 
 def _visible(results: Results) -> list[Curve]:
     """The horizon, with its first hits flown."""
-    curves = _of_surface("horizon")(results)
-    return [replace(curve, first_hits=curve.visible) for curve in curves]
+    return [replace(curve, first_hits=curve.visible) for curve in _of_surface("horizon")(results)]
 
 
 def _gamma(results: Results) -> list[Curve]:
@@ -138,8 +137,7 @@ def _leaves(results: Results) -> list[Curve]:
     low, high = results.scene.tau
     count = results.scene.leaves
     feet = low + (np.arange(count) + 0.5) * (high - low) / count
-    pressed = feet[acceleration(results.scene.seen, feet) < 0]
-    return _manifolds(results, map(repr, pressed.tolist()))
+    return _manifolds(results, map(repr, feet[acceleration(results.scene.seen, feet) < 0].tolist()))
 
 
 def _orbits(results: Results) -> list[Curve]:

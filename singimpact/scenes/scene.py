@@ -299,13 +299,12 @@ class Scene:
 
     def report(self) -> dict[str, Any]:
         """Flights computed, seconds by layer, what came from the cache, curves of each layer in the window."""
-        curves = {name: len(self.results.get(LAYERS[name].need)) for name in self.layers}
         return {
             "flights": sum(self.results.flights.values()),
             "flights_by_need": dict(self.results.flights),
             "seconds_by_layer": dict(self.seconds),
             "from_cache": list(self.results.cached),
-            "curves": curves,
+            "curves": {name: len(self.results.get(LAYERS[name].need)) for name in self.layers},
         }
 
 

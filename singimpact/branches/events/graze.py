@@ -49,8 +49,7 @@ def heights(state: OrbitState) -> Indexed:
     for i, turns in enumerate(state.turns):
         span = state.closing.span(state.at, i)
         for j, (time, height) in enumerate(turn for turn in turns if np.isfinite(turn[1])):
-            rate = state.closing.rise(state.at, state.direction, i, time)
-            yield i, j, Test(height, rate, time / span)
+            yield i, j, Test(height, state.closing.rise(state.at, state.direction, i, time), time / span)
 
 
 class Graze(TouchingKind):

@@ -88,8 +88,7 @@ class OrbitState:
     @cached_property
     def beside(self) -> OrbitState:
         """The state a little further along the tangent."""
-        at = self.at + NUDGE * self.direction
-        moved = OrbitState(self.closing, self.scales, at, self.tangent)
+        moved = OrbitState(self.closing, self.scales, self.at + NUDGE * self.direction, self.tangent)
         if moved.is_finite:
             right = np.zeros(len(self.tangent))
             right[-1] = 1.0

@@ -48,8 +48,7 @@ def rest(model: Model, tau: Any, v: Any, a: Any, r: Any) -> Any:
     if not r < 1:
         return None
     window = size(4 * v / (a * (r - 1)))
-    fast = within(2 * v)
-    pull = -model.push(tau.union(tau + window), fast, model.c().union(model.c() + v * window))
+    pull = -model.push(tau.union(tau + window), within(2 * v), model.c().union(model.c() + v * window))
     low, high = pull.lower(), pull.upper()
     if not low > 0:
         return None

@@ -291,8 +291,7 @@ class Flight:
         self.X, h, self.K = step(self.model, self.tau + self.passed, self.x, self.speed, self.bits)
         self.y, self.slope = above(self.X, self.K, self.c, self.removed)
         if self.model.gap is not None:
-            top = self.c + self.model.gap
-            self.room, self.closing = above([[-part for part in self.X[0]]], self.K, -top, 0)
+            self.room, self.closing = above([[-part for part in self.X[0]]], self.K, -(self.c + self.model.gap), 0)
         return h
 
     def root(self, h: Any) -> tuple[Any, Any]:

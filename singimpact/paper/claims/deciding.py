@@ -120,8 +120,7 @@ def _corrected(claim: Claim, failed: Check) -> _Found:
     if not failed.witness:
         raise ArithmeticError("the printed statement fails without a witness")
     evidence = f"printed: {failed.evidence}; corrected: {check.evidence}"
-    trials = _tried(claim, statement.value)
-    shown = (failed.witness, statement.latex, check.kind, certificates, trials)
+    shown = (failed.witness, statement.latex, check.kind, certificates, _tried(claim, statement.value))
     return _Found("corrected", evidence, *shown, in_model, check.modulo)
 
 

@@ -65,8 +65,8 @@ def imported_by(file: str) -> list[str]:
 
     Examples
     --------
-    >>> imported_by("section4a_fold")
-    ['section2_trials', 'section4_trials', 'section4a_fold']
+    >>> imported_by("section4a_blowup")
+    ['section2_trials', 'section4_trials', 'section4a_blowup']
     """
     modules: set[str] = set()
     todo = [file]

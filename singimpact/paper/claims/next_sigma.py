@@ -37,7 +37,6 @@ def next_sigma_remainder(leading: sympy.Expr) -> tuple[Any, dict[tuple[int, int]
     >>> next_sigma_remainder(eta - sigma / 2)[0], next_sigma_remainder(next_sigma())[0]
     (2, oo)
     """
-    poly = sympy.Poly(next_sigma() - leading, sigma, eta)
-    terms = {key: value for key, value in poly.terms() if value != 0}
+    terms = {key: value for key, value in sympy.Poly(next_sigma() - leading, sigma, eta).terms() if value != 0}
     lowest = min((sum(key) for key in terms), default=sympy.oo)
     return lowest, {key: value for key, value in terms.items() if sum(key) == lowest}

@@ -281,8 +281,7 @@ class VerdictTable(Sequence["Verdict"]):
         paint : colours a verdict's name.
         """
         counts = "\n".join(wrapped("", self._summary(), width))
-        blocks = [laid_out(self._rows(), width, paint), counts, self._misprints(width)]
-        return "\n\n".join(filter(None, blocks))
+        return "\n\n".join(filter(None, [laid_out(self._rows(), width, paint), counts, self._misprints(width)]))
 
     def __str__(self) -> str:
         import shutil

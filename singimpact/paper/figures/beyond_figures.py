@@ -97,10 +97,9 @@ def figure_B5() -> Picture:
     curve = np.array([[float(r), float(scaled(foot(r, 1e-3)[0], r, POWER))] for r in thin])
     u = [float(bound) for bound in elastic().invariant]
     limit = (14 * u[0] / (3 * 12 ** (2 / 3))) ** (3 / 7)
-    level = np.array([[0.0, limit], [1.0, limit]])
     lines = [
         Line(curve, "graph", "X(1-r)^(3/7)", words=r"$X(r)\,(1-r)^{3/7}$"),
-        Line(level, "before", "limit", words=r"its limit 2.94103 as $r \to 1$"),
+        Line(np.array([[0.0, limit], [1.0, limit]]), "before", "limit", words=r"its limit 2.94103 as $r \to 1$"),
     ]
     regions = [
         Region(band, words="3 within 2 %"),
@@ -333,5 +332,4 @@ def figure_B9() -> Picture:
             ((-4.0, -1.0), (-4.0, -1.0)), r"$\log_{10} GP$", r"$\log_{10}$ of the excess", "(b) the second term", second
         ),
     ]
-    models = "; ".join(start.name for start in STARTS)
-    return picture_of("B9", models, panels, facts)
+    return picture_of("B9", "; ".join(start.name for start in STARTS), panels, facts)

@@ -79,8 +79,7 @@ def leaves(model: Any, frame: Window, feet: Iterable[float], pen: str = "manifol
 def figure_3() -> Picture:
     """Nondegenerate chatter: the linearised map, and the foliation by stable manifolds."""
     model, centre = linear(2, "1.2", "0.5"), 0.8
-    a = float(acceleration(model, np.array([centre]))[0])
-    slope = (1 - R) * a / 2
+    slope = (1 - R) * float(acceleration(model, np.array([centre]))[0]) / 2
     low, high, v = centre - 1.0, centre + 1.0, 0.3
     feet = np.linspace(low, high + 0.8, 15)
     straight = [
@@ -123,8 +122,7 @@ def figure_3() -> Picture:
         ),
     ]
     step = np.diff(through.points[:4], axis=0)
-    facts = {"slope": slope, "drawn": float(step[0, 1] / step[0, 0])}
-    return picture_of(3, str(model), panels, facts)
+    return picture_of(3, str(model), panels, {"slope": slope, "drawn": float(step[0, 1] / step[0, 0])})
 
 
 def _near(curves: list[Curve], tau: float, size: float, side: int) -> Array:
@@ -327,8 +325,7 @@ def figure_7() -> Picture:
 
 def figure_8() -> Picture:
     """At a swan point with a'' < 0 every stable manifold flattens, and gamma touches Pi_0 to third order."""
-    swan = next(point for point in swan_points("x", "cos(2*t)") if point.kind == "negative")
-    model = swan.oscillator("0.5")
+    model = next(point for point in swan_points("x", "cos(2*t)") if point.kind == "negative").oscillator("0.5")
     low, high, v = -0.45, 0.45, 0.03
     frame = Window((low, high), (0.0, v), 1 / ARCS)
     (curve, *_) = gammas_within(model, frame)

@@ -102,8 +102,7 @@ def _bends(s: Array, y: Array, end: float) -> float:
     """The largest |y'' - A(s)| over the first flight, as a part of the largest |A|, by differences."""
     until = int(np.searchsorted(s, end))
     first = np.diff(y[:until]) / np.diff(s[:until])
-    middle = (s[: until - 1] + s[1:until]) / 2
-    second = np.diff(first) / np.diff(middle)
+    second = np.diff(first) / np.diff((s[: until - 1] + s[1:until]) / 2)
     wanted = gravity(np.arctan(_frequency() * s[1 : until - 1]) / _frequency())
     return float(np.abs(second - wanted).max() / np.abs(wanted).max())
 

@@ -33,9 +33,8 @@ def figure_1() -> Picture:
     for n, share in enumerate((0.2, 0.5, 0.8)):
         position = fold[int(share * (len(fold) - 1))]
         over = np.array([position * [1, 1, 0], position + np.array([0, 0, 0.25])])
-        words = "lines $w = $ const. that touch the surface on $H$"
         lines += [
-            Line(over, "hidden", f"line over w_{n + 1}", words=words),
+            Line(over, "hidden", f"line over w_{n + 1}", words="lines $w = $ const. that touch the surface on $H$"),
             Line(
                 position[None],
                 "orbit",
@@ -138,8 +137,7 @@ def _panels(letter: str, change: Change, rows: list[tuple[str, list[Curve]]]) ->
     middle = _middle(change, rows)
     shear = _shear(change, rows, middle)
     point = np.array([[change.tau + change.t, 0.0]])  # where lips are born; the shear of that panel goes through it
-    shown = [shear(curve.points) for _, surface in rows for curve in surface]
-    box = _box(change, middle, shown)
+    box = _box(change, middle, [shear(curve.points) for _, surface in rows for curve in surface])
     name, panels = "c" if change.over == "clearance" else change.over, []
     y = r"$v - q(\tau)$" if not change.power else rf"$10^{change.power}\,(v - q(\tau))$"
     for relation, surface in rows:
@@ -271,8 +269,7 @@ def figure_10() -> Picture:
 
 
 def _on(letter: str) -> tuple[float, float]:
-    place = positive().points[letter]
-    return place[1], positive().projected[letter][1]
+    return positive().points[letter][1], positive().projected[letter][1]
 
 
 def _visible(tau: float, curve: Array) -> list[Array]:

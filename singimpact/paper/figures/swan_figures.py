@@ -118,7 +118,6 @@ def figure_14() -> Picture:
     swan, size = negative(), half(negative())
     window = box(swan, -4.6, 4.6, -5 * size, 6 * size)
     (left, right), (_, high) = window
-    whole = np.array([[left, 0], [right, 0], [right, high], [left, high]])
     panel = Panel(
         window,
         y="$t$",
@@ -130,7 +129,7 @@ def figure_14() -> Picture:
         dots=on_surface(swan),
         regions=[
             Region(
-                whole,
+                np.array([[left, 0], [right, 0], [right, high], [left, high]]),
                 label=r"$\mathcal{T}$",
                 words=r"$\mathcal{T}$: visible part of $V'$",
                 place=(right - 1.9 * size, 4.6 * size),
@@ -206,8 +205,7 @@ def figure_12() -> Picture:
         [Dot("$A''$", images["A"]), Dot("$B''=D''$", images["B"]), Dot("$E''$", images["E"])],
         [Region(arc_phi, label=r"$\mathcal{S}''$", words=IMAGES, place=(swan.B - 0.25 * size, -0.11 * v))],
     )
-    panels = [first[0], second[0], first[1], second[1]]
-    return picture_of(12, str(swan.model), panels, zoom=f"{ZOOM:g}")
+    return picture_of(12, str(swan.model), [first[0], second[0], first[1], second[1]], zoom=f"{ZOOM:g}")
 
 
 def figure_15() -> Picture:

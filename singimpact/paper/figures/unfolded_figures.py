@@ -84,8 +84,7 @@ def figure_16() -> Picture:
 
     def step(points: Array, name: str, number: str, at: float = 0.5, arrow: bool = True) -> Line:
         pen = {"2": "graph", "3": "shadow", "4": "Z"}.get(number, "rest")
-        told = words.get(number, words["1"])
-        return Line(points, pen, name, number, at, arrow and pen != "rest", told)
+        return Line(points, pen, name, number, at, arrow and pen != "rest", words.get(number, words["1"]))
 
     first = [
         step(left, "left of A", "1"),
@@ -198,11 +197,10 @@ def _foot_and_lambda(points: Array, foot: float, crossing: tuple[float, float]) 
     met = int(np.argmin(np.abs(points[:turn, 0] - crossing[0])))
     at = met if points[met, 0] > crossing[0] else met - 1
     first, second = np.vstack([points[: at + 1], [crossing]]), np.vstack([[crossing], points[at + 1 : turn + 1]])
-    end = np.array([[foot, 0.0]])
     return [
         Line(first, "loop", "W^s(X)", words="$W^s(X)$: stable manifold of $X$"),
         Line(
-            np.vstack([second, end]),
+            np.vstack([second, [[foot, 0.0]]]),
             "loop",
             "lambda",
             r"$\lambda\subset W^s(X)$",

@@ -51,8 +51,7 @@ def by_launch_time() -> Any:
     """
     difference = P - (u - v * q - A * b)
     change = rate_of(difference)
-    again = rate_of(change)
-    if sympy.expand(again + f_x * difference + f_u * change) != 0:
+    if sympy.expand(rate_of(change) + f_x * difference + f_u * change) != 0:
         raise ArithmeticError("the difference does not solve the homogeneous equation")
     if any(sympy.expand(term.subs(START)) != 0 for term in (difference, change)):
         raise ArithmeticError("the difference does not vanish at the launch")

@@ -84,13 +84,12 @@ def _sector() -> dict[str, object]:
     first, second = fold.phi()
     # x-dot/(k s^2) as a polynomial in p = t/s, s = sigma + t the phase of landing
     speed = sympy.expand(sympy.cancel((second / (k * first**2)).subs(sigma, t * (1 - share) / share)))
-    landing = sympy.factor(first.subs(t, -3 * sigma))
     return {
         "p": share,
         "rise": sympy.factor(sympy.diff(fold.p()[1], t)),
         "landing_speed": speed,
         "fastest": -r * speed.subs(share, sympy.Rational(3, 2)) * k,
-        "landing_from_rest": landing,
+        "landing_from_rest": sympy.factor(first.subs(t, -3 * sigma)),
         "speed_from_rest": sympy.cancel((-r * second).subs(t, -3 * sigma) / first.subs(t, -3 * sigma) ** 2),
     }
 

@@ -38,8 +38,7 @@ def _jumps_on(point: Place, side: int) -> JumpCase:
     for size in (0.02, 0.01, 0.005):
         unit = point.jets()["a_d1"] * size**2
         tau = point.tau + side * size
-        times = _flight_times(point, tau, scaled * unit)
-        at = np.flatnonzero(np.abs(np.diff(times)) > size)
+        at = np.flatnonzero(np.abs(np.diff(_flight_times(point, tau, scaled * unit))) > size)
         counts.append(len(at))
         if len(at) == 1:
             jumps.append((size, _bisected(point, tau, scaled[at[0]] * unit, scaled[at[0] + 1] * unit, size) / unit))

@@ -106,8 +106,7 @@ def first_omitted(setting_: Setting, order: int, quantity: str, search: int = 4)
         if terms == 0:
             continue
         with balls_at(BITS):
-            ball = _evaluated(terms, generic.contact.ring.names, values)
-            if not ball.contains(0):
+            if not _evaluated(terms, generic.contact.ring.names, values).contains(0):
                 return degree
         raise ArithmeticError(f"the part of degree {degree} of {quantity} at {setting_.name} is not decided")
     raise ArithmeticError(f"no part of degree up to {order + search} is left in {quantity} at {setting_.name}")
@@ -135,13 +134,12 @@ def _without(poly: Any, ring: Any, zeros: set[str]) -> Any:
 
 def _ball_values(place: Setting, generic: Sheet, balls: Balls) -> dict[str, Any]:
     top = max(generic.contact.a)
-    tau = _tau_ball(place, balls)
-    a = acceleration_jet(place.model, tau, top, balls)
+    a = acceleration_jet(place.model, _tau_ball(place, balls), top, balls)
     f = force_jet(place.model, place.j, generic.order, balls)
-    values = {derivative_name(k): a[k] * factorial(k) for k in generic.contact.a}
-    for i, k in generic.contact.f:
-        values[f"f_{i}{k}"] = f.get((i, k), balls.rational(Fraction(0))) * (factorial(i) * factorial(k))
-    return values
+    return {derivative_name(k): a[k] * factorial(k) for k in generic.contact.a} | {
+        f"f_{i}{k}": f.get((i, k), balls.rational(Fraction(0))) * (factorial(i) * factorial(k))
+        for i, k in generic.contact.f
+    }
 
 
 def _tau_ball(place: Setting, balls: Balls) -> Any:
@@ -197,13 +195,16 @@ def remainders(j: int | str, order: int) -> tuple[RemainderCase, ...]:
         setting_ = setting(name, j)
         series = sheet(Contact.of(setting_.model, setting_.tau, j, order, DOUBLES), order)
         flow = true_orbits.scipy_flow(setting_.model, float(setting_.tau))
-        for quantity in ("v_c", "phi"):
-            expected = first_omitted(setting_, order, quantity)
-            cases.append(
-                RemainderCase(
-                    f"{name}, DOP853", quantity, order, expected, measured(series, flow, quantity, list(STEPS))
-                )
+        cases += [
+            RemainderCase(
+                f"{name}, DOP853",
+                quantity,
+                order,
+                first_omitted(setting_, order, quantity),
+                measured(series, flow, quantity, list(STEPS)),
             )
+            for quantity in ("v_c", "phi")
+        ]
     return tuple(cases) + _with_digits(j, order)
 
 
@@ -212,8 +213,7 @@ def _with_digits(j: int, order: int) -> tuple[RemainderCase, ...]:
     setting_ = setting("linear, omega 2", j)
     context, origin, clearance = true_orbits.many_digits(j)
     model = setting_.model.replace(clearance=clearance)
-    ring = Multiprecision(context)
-    series = sheet(Contact.of(model, origin, j, order, ring), order)
+    series = sheet(Contact.of(model, origin, j, order, Multiprecision(context)), order)
     flow = true_orbits.closed_flow(Fraction(2), clearance, origin, context)
     steps = [context.mpf(10) ** power for power in DIGIT_STEPS]
     return tuple(

@@ -163,7 +163,6 @@ def hop(lift: Model, rate: str, depth: int) -> Hop:
     path = run.sample(np.linspace(A, float(hits[0]), FINE))
     top = float(np.max(path.x)) - as_float(osc.clearance)
     runs = [orbit(osc, share * period, speed, 400) for share, speed in FROM]
-    others = [float(other.tau[other.kind == "release"][0]) % period for other in runs]
     return Hop(
         half=half,
         first=(float(hits[0]) - A) / half,
@@ -172,5 +171,5 @@ def hop(lift: Model, rate: str, depth: int) -> Hop:
         rest=(completed - A) / half,
         period=float(np.max(np.abs(np.diff(run.tau[releases]) - period))),
         impacts=int(releases[1] - releases[0] - 2),
-        merged=bool(np.ptp(others) < 1e-12),
+        merged=bool(np.ptp([float(other.tau[other.kind == "release"][0]) % period for other in runs]) < 1e-12),
     )

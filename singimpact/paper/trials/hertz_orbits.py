@@ -76,8 +76,7 @@ def measured(start: Start, q: Fraction) -> Measured:
     s = (j + 1) * q / (1 - q)
     first = FLIGHTS[q][0] / FARTHEST ** float(s)  # v/(b h^(j+1)) is this times h^s
     loss = float(f"{first ** float(1 - q) / float(constant(j, q)):.3g}")
-    rho = f"-v*(1 - C*(-v)**({q}))"
-    osc = Oscillator(start.f, start.g, 0, rho, {"C": repr(loss)})
+    osc = Oscillator(start.f, start.g, 0, f"-v*(1 - C*(-v)**({q}))", {"C": repr(loss)})
     distances, speeds, widths = [], [], []
     for count in FLIGHTS[q]:
         h = FARTHEST * (count / FLIGHTS[q][0]) ** float(1 / s)

@@ -151,8 +151,7 @@ def exact_sheet(height: sympy.Expr) -> tuple[sympy.Expr, sympy.Expr]:
         jet * ((sigma + t) ** (n + 2) - sigma ** (n + 2) - (n + 2) * sigma ** (n + 1) * t) / ((n + 1) * (n + 2))
         for n, jet in enumerate(jets)
     )
-    whole = sympy.expand(v * t + moved)
-    motion((sigma, v, t), whole, jets, {}, launch=sympy.expand(-sympy.cancel(moved / t)))
+    motion((sigma, v, t), sympy.expand(v * t + moved), jets, {}, launch=sympy.expand(-sympy.cancel(moved / t)))
     return launch, landing
 
 

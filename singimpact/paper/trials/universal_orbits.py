@@ -67,8 +67,7 @@ def preimages() -> Preimages:
     rate = true_orbits.lambda_of(0.5, 1)
     limit = 24 * (1 - rate) * (2 + rate) / 6
     heights, farther = _jump_heights(1e-3, limit, 7), _jump_heights(2e-3, limit, 2)
-    factor = (heights[-1] - limit) / (heights[-2] - limit)
-    return Preimages(heights, farther, limit, factor)
+    return Preimages(heights, farther, limit, (heights[-1] - limit) / (heights[-2] - limit))
 
 
 def _jump_heights(h: float, limit: float, jumps: int) -> tuple[float, ...]:
@@ -171,8 +170,7 @@ def feet_on_the_landing_arc(r: str) -> tuple[float, ...]:
     sigma = -(4 * grazing + np.sqrt(36 - 2 * grazing**2)) / 6
     flight = -4 * sigma - 2 * grazing
     tau, v = sigma + flight, rate * flight * (flight - grazing) ** 2
-    ends = osc.chatter_limit(tau, v).tau
-    return tuple(np.diff(ends) / np.hypot(np.diff(tau), np.diff(v)))
+    return tuple(np.diff(osc.chatter_limit(tau, v).tau) / np.hypot(np.diff(tau), np.diff(v)))
 
 
 @lru_cache(maxsize=4)

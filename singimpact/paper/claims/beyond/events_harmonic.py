@@ -56,7 +56,6 @@ def _two_families(stated: tuple[sympy.Expr, sympy.Expr, sympy.Expr]) -> Check:
     rests = all(sympy.cancel(factor.subs(other, simultaneous=True)) == 0 for factor in (odd, turn, slip))
     real = {name: sympy.sympify(image).subs(kappa, REAL) for name, image in other.items()}
     second = composed(even, real | {kappa: REAL}, skew)
-    pushes = composed(p_ + q_ - 2 * r_, {p_: at["a1"], q_: at["a-1"], r_: skew}, total)
     return every(
         [
             ("from x and x' at both rests: Sm (Sw Ch - omega Cw Sh) = 0", either),
@@ -64,7 +63,7 @@ def _two_families(stated: tuple[sympy.Expr, sympy.Expr, sympy.Expr]) -> Check:
             ("Sw Ch = omega Cw Sh: a flight for every m, its c", rests and second),
             (
                 "there the accelerations at the two rests are opposite, so that one of them is not reached upwards",
-                pushes,
+                composed(p_ + q_ - 2 * r_, {p_: at["a1"], q_: at["a-1"], r_: skew}, total),
             ),
             ("Sh = 0 asks for Sw = 0: the rests are a period of the flight apart", _with_sine_zero()),
         ]
@@ -172,8 +171,7 @@ def _falls() -> bool:
     s_u, S_u, c_u, C_u = sympy.symbols("s_u S_u c_u C_u")  # sine and cosine of u, omega u
     speed = kappa * omega * S_u - P * s_u
     factored = composed(speed, {P: kappa * omega * Sw / Sh}, kappa * omega * s_u * (S_u / s_u - Sw / Sh))
-    rates = {S_u: omega * C_u, s_u: c_u}
-    slope = sum(sympy.diff(S_u / s_u, name) * rate for name, rate in rates.items())
+    slope = sum(sympy.diff(S_u / s_u, name) * rate for name, rate in {S_u: omega * C_u, s_u: c_u}.items())
     return factored and composed(p_, {p_: slope}, -(S_u * c_u - omega * C_u * s_u) / s_u**2)
 
 
@@ -299,8 +297,7 @@ REACH = 10
 @cache
 def first_met(f: str, g: str) -> Transition:
     """The first visible transition below the highest negative swan over the clearance."""
-    model = ImpactOscillator(f, g, 0, "1/2")
-    found = transitions(model, "clearance", ("-1.2", "1.5"), (-REACH, REACH)).visible
+    found = transitions(ImpactOscillator(f, g, 0, "1/2"), "clearance", ("-1.2", "1.5"), (-REACH, REACH)).visible
     swan = max(each.value for each in found if each.kind == "swan, negative")
     return max((each for each in found if each.value < swan), key=lambda each: each.value)
 

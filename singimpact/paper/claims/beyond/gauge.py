@@ -67,8 +67,7 @@ def _ball(stated: tuple[int, int]) -> Check:
 def _routes_agree(damping: Fraction, square: Fraction) -> bool:
     """Whether v_c of a linear model is the closed form of the ball, for one jet of a_c of contact order 1."""
     jet = {k: Fraction((-1) ** k * (k + 2), k + 1) for k in range(1, ORDER)}
-    stiffness = damping**2 + square
-    linear: dict[tuple[int, ...], Any] = {(1, 0): stiffness, (0, 1): 2 * damping}
+    linear: dict[tuple[int, ...], Any] = {(1, 0): damping**2 + square, (0, 1): 2 * damping}
     direct = sheet(Contact(1, RATIONALS, jet, linear), ORDER).v
     return all(value == 0 for value in (direct - _of_the_ball(jet, damping, square)).terms.values())
 
@@ -106,10 +105,9 @@ def _entry(stated: tuple[int, ...]) -> Check:
     entries = []
     for j in range(3):
         bent = generic_sheet(j, 2 * j + 3)
-        series = sympy.expand(bent.to_sympy(bent.v))
         degrees = [
             sum(sympy.Poly(term, *sympy.symbols("sigma t")).monoms()[0])
-            for term in series.as_ordered_terms()
+            for term in sympy.expand(bent.to_sympy(bent.v)).as_ordered_terms()
             if {str(name) for name in term.free_symbols} & {"f_20", "f_11", "f_02"}
         ]
         entries.append(min(degrees) - (j + 1))

@@ -24,7 +24,6 @@ FILES = (
     "section3",
     "section4",
     "section4a_arc",
-    "section4a_fold",
     "section4a_blowup",
     "section4a_multipliers",
     "section4b",

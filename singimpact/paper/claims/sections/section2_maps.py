@@ -51,8 +51,7 @@ def _same_zeros(stated: sympy.Expr, derived: sympy.Expr) -> bool:
     """Whether two polynomials are multiples of one another by a number that is not 0."""
     if stated == 0 or derived == 0:
         return bool(stated == derived)
-    ratio = sympy.cancel(stated / derived)
-    return bool(ratio.is_Rational)
+    return bool(sympy.cancel(stated / derived).is_Rational)
 
 
 def _two_sheets(rank: int) -> Check:
@@ -86,8 +85,7 @@ def _horizon(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
 
 def _whitney(powers: tuple[int, int]) -> Check:
     """Orders of vanishing of v along the kernel: at a tangency point (a fold of p) and at the cusp D of the unfolded swan."""
-    normal = fold_form(4).normal[1]
-    fold = sympy.Poly(normal, sympy.Symbol("eta")).degree()
+    fold = sympy.Poly(fold_form(4).normal[1], sympy.Symbol("eta")).degree()
     first, second, third, mixed = model.cusp_conditions(model.D)
     cusp = 3 if first == second == 0 and third != 0 and mixed != 0 else 0
     return every(
@@ -183,8 +181,7 @@ def _lift_off(level: sympy.Expr) -> Check:
 
     x_c starts at c: above a lower level every flight from rest is at first, and above a higher one none, whatever a is.
     """
-    c = sympy.Symbol("c")
-    height = sympy.expand(c + t * route.y_c(2).subs({sigma: 0, v: 0}))
+    height = sympy.expand(sympy.Symbol("c") + t * route.y_c(2).subs({sigma: 0, v: 0}))
     start, bend = height.coeff(t, 0), height.coeff(t, 2)
     return every(
         [

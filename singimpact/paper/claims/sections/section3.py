@@ -26,14 +26,13 @@ def _eigenvectors(stated: tuple[tuple[Any, tuple[Any, Any]], ...]) -> Check:
     """Each (eigenvalue, vector) satisfies DG vector = eigenvalue vector, and the two vectors are independent."""
     matrix = route.DG()
     sides = [(matrix * sympy.Matrix(vector), value * sympy.Matrix(vector)) for value, vector in stated]
-    basis = sympy.Matrix([list(vector) for _, vector in stated])
     return every(
         [
             (
                 "DG v = lambda v for both vectors",
                 all(same(x, y) for left, right in sides for x, y in zip(left, right, strict=True)),
             ),
-            ("they are independent", not is_zero(basis.det())),
+            ("they are independent", not is_zero(sympy.Matrix([list(vector) for _, vector in stated]).det())),
         ]
     )
 

@@ -151,8 +151,7 @@ def shortening(j: int, side: int) -> list[Part]:
     u = sympy.Symbol("u")
     corner = {sigma: u} if side > 0 else {sigma: u - t / 3}
     again = sympy.expand(launch.subs({sigma: sigma + t, t: rho * t}, simultaneous=True) - rho * landing)
-    slower = sympy.expand(again.subs(corner, simultaneous=True))
-    terms = sympy.Poly(slower, u, t, rho)
+    terms = sympy.Poly(sympy.expand(again.subs(corner, simultaneous=True)), u, t, rho)
     growing = sympy.Poly(sympy.diff(launch, t), sigma, t)
     landed = sympy.Poly(sympy.expand(landing.subs(corner) / t), u, t)
     definite = all(value > 0 for value in landed.coeffs()) and {(j, 0), (0, j)} <= set(landed.monoms())

@@ -142,8 +142,7 @@ def _over_rates(trial: Callable[[str, dict[str, Any]], Trial]) -> Trials:
 
 def _at(expression: sympy.Expr, m: Any, r: Any) -> Any:
     """A polynomial in m and r at numbers of an mpmath context; sympy's own text has its rationals in mpmath.mp."""
-    spaces = [{"mpf": r.context.mpf}, "mpmath"]
-    return sympy.lambdify((fold.m, sympy.Symbol("r")), expression, spaces)(m, r)
+    return sympy.lambdify((fold.m, sympy.Symbol("r")), expression, [{"mpf": r.context.mpf}, "mpmath"])(m, r)
 
 
 def _image(m: Any, r: Any) -> Any:

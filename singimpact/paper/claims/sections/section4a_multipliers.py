@@ -101,18 +101,16 @@ def _m2_sign(stated: int) -> Check:
 def _q_velocity(root: sympy.Expr) -> Any:
     """v on q's image of (sigma, eta) = (1, root) at r = 1/2, k = 1."""
     _, second = fold.phi()
-    point = {sigma: 1, t: root - THREE_HALVES, fold.k: 1, r: HALF}
-    return sympy.N((-r * second).subs(point), 20)
+    return sympy.N((-r * second).subs({sigma: 1, t: root - THREE_HALVES, fold.k: 1, r: HALF}), 20)
 
 
 def ray_m3(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
     """On the m3 ray v > 0 and p, q agree in orientation; m3 grows from stated[0] to stated[1] with r."""
     low, high = stated
     rule = fold.r_of_m()
-    ray = _ray(low, high)
     return every(
         [
-            ("v > 0 and the same orientation on the ray", ray == {"v": 1, "orientation": 1}),
+            ("v > 0 and the same orientation on the ray", _ray(low, high) == {"v": 1, "orientation": 1}),
             ("t = (m - 3/2) sigma > 0 for sigma < 0", positive_on(THREE_HALVES - m, m, low, high)),
             ("r(m) increases on the interval", positive_on(sympy.diff(rule, m), m, low, high)),
             ("from 0 to 1", value_at(rule, m, low) == 0 and value_at(rule, m, high) == 1),
@@ -240,11 +238,10 @@ def _tangent(stated: tuple[sympy.Expr, int]) -> Check:
     s, start, bend = sympy.symbols("s m_3 c")
     derived = sympy.diff(s * (start + bend * s), s).subs(s, 0)  # eta = s m(s) with m(s) = m_3 + c s + ...
     value = sympy.Poly(fold.fixed_point_factors()[1].subs(r, HALF), m).nroots(n=20)[2]
-    positive = positive_on(m, m, HALF, THREE_HALVES)
     return every(
         [
             ("the tangent at the origin has slope m(0) = m3 in (1/2, 3/2)", slope == derived),
-            ("for sigma < 0 the sign of eta = m sigma is -", positive and sign == -1),
+            ("for sigma < 0 the sign of eta = m sigma is -", positive_on(m, m, HALF, THREE_HALVES) and sign == -1),
         ],
         witness=lambda: {"r": "1/2", "slope of the tangent": str(value), "stated slope": str(slope)},
     )

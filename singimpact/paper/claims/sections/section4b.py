@@ -55,14 +55,13 @@ def _on_rays(stated: tuple[sympy.Expr, sympy.Expr, sympy.Expr, sympy.Expr, sympy
         else:
             rest = At(leading.subs(k, a_symbol(1) / 6) + monomial * X, {X: sympy.expand(quotient)})
             substitution(At(series, {t: ell * sigma}), rest)
-    stated_powers = tuple(sympy.Poly(monomial, sigma, ell).monoms()[0])
     return every(
         [
             check,
             ("y_c = v at t = 0, so v_c(sigma, 0) = 0 and both velocities have the factor t", vanish_at_launch()),
             (
                 f"to degree 4 what is left out has the factor {monomial} and no higher power",
-                divided and set(lowest) == {stated_powers},
+                divided and set(lowest) == {tuple(sympy.Poly(monomial, sigma, ell).monoms()[0])},
             ),
         ],
         witness=lambda: {"factor of what is left out": f"sigma^{lowest[0][0]} l^{lowest[0][1]}"},
@@ -147,12 +146,11 @@ def image_of_sector() -> tuple[sympy.Expr, sympy.Expr]:
 
 def _half_plane(stated: int) -> Check:
     """The sign of v on T'', between the edge of phi's image and 0, a' < 0: the half-plane it lies in."""
-    lower = image_of_sector()[1] / 6 * a_symbol(1)
     return every(
         [
             (
                 "both bounds are <= 0 for a' < 0, so it lies in v <= 0",
-                negative_on(lower, a_symbol(1), -sympy.oo, 0) and stated == -1,
+                negative_on(image_of_sector()[1] / 6 * a_symbol(1), a_symbol(1), -sympy.oo, 0) and stated == -1,
             )
         ],
         witness=lambda: {"a'": "-1", "sigma": "1", "v between": "-3/8 and 0"},

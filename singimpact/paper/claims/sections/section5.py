@@ -85,8 +85,7 @@ def _intersections(count: int) -> Check:
 
 def _place(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
     low, high = stated
-    polynomial = swan.fixed_point_polynomial()
-    half = polynomial.subs(r, HALF)
+    half = swan.fixed_point_polynomial().subs(r, HALF)
     rule = swan.r_of_m()
     return every(
         [
@@ -138,12 +137,11 @@ def _saddle(stated: tuple[int, int]) -> Check:
 def _positive_slope(sign: int) -> Check:
     """dv_c/dt = -(a''/24)(6 sigma^2 + 8 sigma t + 3 t^2): the form is definite."""
     leading = sympy.expand(sympy.diff(swan_velocity(), t) / (-a2 / 24))
-    definiteness = definite(leading, sigma, t)
     return every(
         [
             (
                 f"dv_c/dt = -(a''/24)({leading}) + ..., a definite form, so > 0 off w_* for a'' < 0",
-                definiteness == 1 and sign == 1,
+                definite(leading, sigma, t) == 1 and sign == 1,
             )
         ]
     )

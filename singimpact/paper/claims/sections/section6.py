@@ -95,8 +95,7 @@ def _lips(cusps: int) -> Check:
     """H is an ellipse, and p has cusps at exactly the points of H with v_tt = 0."""
     conic, second = model.horizon(), sympy.diff(model.launch_velocity(), t, 2)
     line = sympy.cancel(root_of_line(second, t))
-    on_line = sympy.Poly(conic.subs(t, line), sigma)
-    points = [(root, line.subs(sigma, root)) for root in on_line.real_roots()]
+    points = [(root, line.subs(sigma, root)) for root in sympy.Poly(conic.subs(t, line), sigma).real_roots()]
     good = [model.cusp_conditions(point) for point in points]
     return persisting(
         [

@@ -94,8 +94,7 @@ def _cells(conics: Iterable[Any]) -> list[dict[Any, Any]]:
     cells = []
     for time in _between([*turns, *meets, t], t):
         if time > 0:
-            places = _between([curve.subs(t, time) for curve in curves], sigma)
-            cells += [{sigma: phase, t: time} for phase in places]
+            cells += [{sigma: phase, t: time} for phase in _between([curve.subs(t, time) for curve in curves], sigma)]
     return cells
 
 
@@ -172,7 +171,6 @@ def chatter_check(stated: Any) -> Check:
     after = {sigma: (1, sympy.oo), t: (0, sympy.oo)}
     next_launch = launch.subs({sigma: sigma + t, t: r * t}, simultaneous=True)
     excess = sympy.expand(sympy.cancel((next_launch - impact) / t))
-    rise = sympy.expand(sympy.diff(t * launch, t))
     return near_the_swan(
         every(
             [
@@ -184,7 +182,7 @@ def chatter_check(stated: Any) -> Check:
                     "for sigma > 1 every flight ends at its t: q > 0 for u > 0",
                     positive_in(model.cofactor(), after | {u: (0, sympy.oo)}),
                 ),
-                ("for sigma > 1 v rises with t", positive_in(rise, after)),
+                ("for sigma > 1 v rises with t", positive_in(sympy.expand(sympy.diff(t * launch, t)), after)),
                 (
                     "v(sigma + t, r t) exceeds the velocity after the impact: each flight is shorter than r times the last",
                     positive_in(excess, after | {r: (0, 1)}),

@@ -153,12 +153,11 @@ def _tangent(order: int) -> Check:
 def _loop(stated: int) -> Check:
     """Branches of W^s(X) over lines that meet delta: one above it and one just below, joined to the left of D'."""
     loops = universal_orbits.loops()
-    pairs = all(sum(pair) == stated for pair in loops.around)
     return every(
         [
             (
                 f"W^s(X) crosses the lines sigma = -1.05, -1.8, -2.7 (above, just below delta) {loops.around} times, and -4.5, -5 {loops.beyond} times: two branches, which join to the left of D'; nearer to A than 0.05 no line was tried",
-                pairs and loops.beyond == (stated, 0),
+                all(sum(pair) == stated for pair in loops.around) and loops.beyond == (stated, 0),
             )
         ],
         kind="supported",
