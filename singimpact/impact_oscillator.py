@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from functools import partial
+from collections.abc import Callable, Mapping
 from math import inf
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +17,7 @@ from singimpact.inputs import (
     refuse,
     takes_two_walls,
     whole,
+    with_walls,
 )
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import UPPER
@@ -35,6 +35,12 @@ if TYPE_CHECKING:
     from singimpact.flights.orbits import Ends as Iterates
     from singimpact.flights.results import Derivative, Flight, Step
     from singimpact.oscillator.shaken_wall import ShakenWall
+
+
+def _at_walls(method: Callable[..., Any], osc: Oscillator, wall: Any, states: tuple[Any, ...], options: Any) -> Any:
+    from singimpact.flights.walls import shared_out
+
+    return shared_out(method, osc, wall, states, options)
 
 
 @checked_methods
@@ -56,13 +62,12 @@ class ImpactOscillator(Oscillator):
     tangency_points, classify, grown_gamma, release_map = Study(), Study(), Study(), Study()
     border_orbits, transitions, explore, selftest = Study(), Study(), Study(), Study()
 
-    @takes_two_walls
+    @with_walls(_at_walls)
     def first_hit(
         self,
         tau: Any,
         v: Any,
         *,
-        wall: Any = None,
         digits: int | None = None,
         tolerance: Any = None,
         horizon: Any = None,
@@ -95,22 +100,19 @@ class ImpactOscillator(Oscillator):
         """
         from singimpact.flights.impact_map import first_hit
 
-        if threads is None and wall is None:
+        if threads is None:
             return first_hit(self, tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps, out=out)
         from singimpact.flights.interruptible import on_threads
-        from singimpact.flights.walls import at_walls
 
-        fly = partial(first_hit, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps, out=out)
         with on_threads(threads):
-            return at_walls(fly, self, wall, (tau, v), out)
+            return first_hit(self, tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps, out=out)
 
-    @takes_two_walls
+    @with_walls(_at_walls)
     def impact_map(
         self,
         tau: Any,
         v: Any,
         *,
-        wall: Any = None,
         digits: int | None = None,
         tolerance: Any = None,
         horizon: Any = None,
@@ -137,14 +139,12 @@ class ImpactOscillator(Oscillator):
         """
         from singimpact.flights.impact_map import impact_map
 
-        if threads is None and wall is None:
+        if threads is None:
             return impact_map(self, tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps, out=out)
         from singimpact.flights.interruptible import on_threads
-        from singimpact.flights.walls import at_walls
 
-        fly = partial(impact_map, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps, out=out)
         with on_threads(threads):
-            return at_walls(fly, self, wall, (tau, v), out)
+            return impact_map(self, tau, v, digits=digits, tolerance=tolerance, horizon=horizon, steps=steps, out=out)
 
     def enclosed_impact(
         self, tau: Any, v: Any, *, radii: Mapping[str, Any] | None = None, digits: int = 30, horizon: Any = None

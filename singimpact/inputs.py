@@ -177,6 +177,21 @@ def takes_two_walls(function: T) -> T:
     return function
 
 
+def with_walls(shared_out: Callable[..., Any]) -> Callable[[T], T]:
+    """A mark as `takes_two_walls`, of a method of states at the lower wall that takes `wall=` besides.
+
+    Parameters
+    ----------
+    shared_out : calls the method for states at given walls: of the method, its model, wall, and other arguments.
+    """
+
+    def mark(function: T) -> T:
+        setattr(function, TWO_WALLS, shared_out)
+        return function
+
+    return mark
+
+
 def _may_have_walls(value: object) -> bool:
     """Whether a value is a model with two walls, or an orbit or an event, which has a model; perhaps a text too."""
     return hasattr(value, "oscillator") or getattr(value, "upper", None) is not None
@@ -205,7 +220,8 @@ def checked_keywords(function: Callable[P, T]) -> Callable[P, T]:
     singimpact.inputs.InputError: <lambda> has no argument 'c': give clearance
     """
 
-    guarded = not hasattr(function, TWO_WALLS)
+    mark = getattr(function, TWO_WALLS, False)
+    guarded = not mark
     name = function.__qualname__.removesuffix(".__init__").rpartition(".")[2]
     first = int(function.__name__ == "__init__")  # of a class, whose model comes second
 
@@ -213,6 +229,14 @@ def checked_keywords(function: Callable[P, T]) -> Callable[P, T]:
     def checked(*values: P.args, **named: P.kwargs) -> T:
         if guarded and (len(values) <= first or _may_have_walls(values[first]) or "model" in named):
             require_one_wall(name, values, named)
+        if callable(mark) and "wall" in named:
+            rest: dict[str, Any] = dict(named)
+            wall = rest.pop("wall")
+            try:
+                return mark(function, values[0], wall, values[1:], dict(rest))  # type: ignore[no-any-return]
+            except (TypeError, KeyError):
+                _in_new_names(function, values, rest)
+                raise
         try:
             return function(*values, **named)
         except TypeError:
@@ -221,6 +245,12 @@ def checked_keywords(function: Callable[P, T]) -> Callable[P, T]:
                 raise
         return function(*values, **renamed)
 
+    if callable(mark):
+        from inspect import Parameter, signature
+
+        takes = signature(function)
+        last = Parameter("wall", Parameter.KEYWORD_ONLY, default=None, annotation="Any")
+        checked.__signature__ = takes.replace(parameters=[*takes.parameters.values(), last])  # type: ignore[attr-defined]
     return checked
 
 

@@ -137,7 +137,7 @@ def chatter_limit(
     0.95935923442208 complete True
     """
     if wall is not None:
-        return at_walls(partial(chatter_limit, digits=digits, impacts=impacts), osc, wall, (tau, v))
+        return at_walls(partial(chatter_limit, digits=digits, impacts=impacts), osc, wall, (tau, v))  # type: ignore[no-any-return]
     states, most = (
         States.of(osc, tau, v, digits if isinstance(digits, int) else 15),
         whole("impacts", impacts, 1, 10**7),

@@ -54,7 +54,7 @@ def derivative(osc: Oscillator, tau: Any, v: Any, *, horizon: Any = None, wall: 
     [[1.0, 1.0], [0.0, 0.5]]
     """
     if wall is not None:
-        return at_walls(partial(derivative, horizon=horizon), osc, wall, (tau, v))
+        return at_walls(partial(derivative, horizon=horizon), osc, wall, (tau, v))  # type: ignore[no-any-return]
     flown = None
     if type(tau) is float and type(v) is float and horizon is None and compiled_model(osc).constant_restitution:
         result, flown = _of_one(osc, tau, v)

@@ -63,7 +63,7 @@ def inverse_map(
     """
     require_rebound(osc, "the inverse of the impact map")
     if wall is not None:
-        return at_walls(partial(inverse_map, digits=digits, horizon=horizon), osc, wall, (tau, v))
+        return at_walls(partial(inverse_map, digits=digits, horizon=horizon), osc, wall, (tau, v))  # type: ignore[no-any-return]
     if many(tau, v, digits=digits):
         return in_blocks(partial(inverse_map, osc, horizon=horizon), tau, v)  # type: ignore[no-any-return]
     if type(tau) is float and type(v) is float and digits is horizon is None and not names_in(osc.restitution):

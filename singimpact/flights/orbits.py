@@ -137,7 +137,7 @@ def iterate(
     """
     if wall is not None:
         fly = partial(iterate, impacts=impacts, tolerance=tolerance, horizon=horizon)
-        return at_walls(fly, osc, wall, (tau, v))
+        return at_walls(fly, osc, wall, (tau, v))  # type: ignore[no-any-return]
     if many(tau, v):
         return in_blocks(partial(iterate, osc, impacts=impacts, tolerance=tolerance, horizon=horizon), tau, v)  # type: ignore[no-any-return]
     states = States.read(tau, v).in_period(osc)

@@ -1,7 +1,8 @@
 """States at two walls: those of the upper wall are flown by the model with x -> -x, and their results turned back."""
 
 from collections.abc import Callable, Mapping
-from typing import Any, TypeVar
+from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -12,8 +13,6 @@ from singimpact.flights.states import as_written
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Wall, status_array, wall_of
-
-R = TypeVar("R")
 
 
 def wall_codes(osc: Oscillator, wall: Any) -> Array:
@@ -37,12 +36,12 @@ def wall_codes(osc: Oscillator, wall: Any) -> Array:
 
 
 def at_walls(
-    fly: Callable[..., R],
+    fly: Callable[..., Any],
     osc: Oscillator,
     wall: Any,
     columns: tuple[Any, ...],
     out: Mapping[str, Array] | None = None,
-) -> R:
+) -> Any:
     """The result of `fly(model, *columns)` for states at walls, in the coordinates of the model.
 
     Parameters
@@ -69,8 +68,7 @@ def at_walls(
         fly(model, *(column.ravel()[at] for column in states))
         for model, at in zip((osc, osc.mirrored), chosen, strict=True)
     ]
-    both: R = _together([parts[0], turned(parts[1])], chosen, codes.shape)
-    return both
+    return _together([parts[0], turned(parts[1])], chosen, codes.shape)
 
 
 def each_wall(osc: Oscillator, xdot: Array) -> list[tuple[Oscillator, Array]]:
@@ -88,7 +86,15 @@ def each_wall(osc: Oscillator, xdot: Array) -> list[tuple[Oscillator, Array]]:
     return [(osc, np.flatnonzero(~above)), (osc.mirrored, np.flatnonzero(above))]
 
 
-def turned(result: R, out: Mapping[str, Array] | None = None) -> R:
+def shared_out(fly: Callable[..., Any], osc: Oscillator, wall: Any, states: tuple[Any, ...], options: Any) -> Any:
+    """`at_walls` of a method of tau and v, which may be given by their names, and of options."""
+    columns = (*states, *(options.pop(name) for name in ("tau", "v")[len(states) :]))
+    if wall is None:
+        return fly(osc, *columns, **options)
+    return at_walls(partial(fly, **options), osc, wall, columns, options.get("out"))
+
+
+def turned(result: Any, out: Mapping[str, Array] | None = None) -> Any:
     """A result of the model with x -> -x in the coordinates of the model; arrays of the caller are turned in place."""
     fields = vars(result)
     if fields.get("wall") is not None:
