@@ -1,5 +1,7 @@
 """Certified enclosures: the ring of real balls (python-flint's arb), and simple zeros of functions refined in it."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction

@@ -6,6 +6,8 @@ denominator.  How large the coefficients are is not known, so B grows until ever
 coefficient must agree at another number, which is a root of what is wrong only by chance.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import lcm

@@ -1,5 +1,7 @@
 """A number that is sought: by halving, by the secant method, by Newton's method in balls."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from fractions import Fraction
 from typing import Any, TypeVar

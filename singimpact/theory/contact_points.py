@@ -1,5 +1,7 @@
 """A model at a contact point, in the best numbers there are: rationals, exact constants of sympy, or balls."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any

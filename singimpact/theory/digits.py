@@ -1,5 +1,7 @@
 """Certified digits: a computation in balls is done again with more bits until each result has its digits."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterable, Mapping
 from fractions import Fraction
 from math import ceil

@@ -4,6 +4,8 @@ Lengths are first measured so that a_j = 1; that symbol is put back at the end, 
 The denominators are known beforehand: powers of the divisors that the solver meets, and of lambda.
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from fractions import Fraction
 from functools import lru_cache

@@ -45,7 +45,7 @@ def test_an_orbit_has_the_walls_of_its_impacts(singimpact, tmp_path):
 
 
 def test_commands_of_one_wall_say_so(singimpact):
-    refused = singimpact("explore", *WALLS)
+    refused = singimpact("border", *WALLS)
     assert refused.exit_code != 0
     assert "takes a model with one wall" in refused.output
 
