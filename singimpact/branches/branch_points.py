@@ -170,7 +170,7 @@ def half_of(closing: AnyClosing) -> AnyClosing | None:
     first, second = closing.word[: closing.n // 2], closing.word[closing.n // 2 :]
     if closing.k % 2 == 0 and first == second:
         return closing_of(closing.family.osc, first, closing.k // 2, closing.over)
-    if closing.k % 2 and second == tuple(1 - wall for wall in first):
+    if first and closing.k % 2 and second == tuple(1 - wall for wall in first):
         return closing_of_word(closing.family.osc, first, closing.k / 2, closing.over)
     return None
 
