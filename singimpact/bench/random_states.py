@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import partial
-from math import inf, log2, pi
+from math import acos, inf, log2, nan, pi
 from typing import Any
 
 import flint
@@ -47,9 +47,15 @@ class Draw:
 
 DRAW = Draw()
 REGIMES = ("generic", "low", "graze", "long")
-WALL_REGIMES = (*REGIMES, "narrow", "wide")
-BETWEEN_WALLS_FROM = 10**9
-"""The number of the first case between two walls."""
+FAMILIES = {
+    "reference": (0, "", REGIMES),
+    "between-walls": (10**9, " between walls", (*REGIMES, "narrow", "wide")),
+    "plastic": (2 * 10**9, " with restitution 0", ("anywhere", "pressed", "rising", "falling")),
+}
+"""Of each the number of its first case, what follows the names of its kinds, and its regimes.
+
+Plastic states are at rest on the wall: anywhere, where a_c presses, and just after and before a zero of a_c.
+"""
 COLUMNS = ("status", "time_error", "velocity_error", "wrong", "tau", "v", "depth", "bound")
 
 
@@ -69,20 +75,38 @@ class Model(Launch):
         walls = {"upper": self.upper, "upper_restitution": law}
         return ImpactOscillator(CUBIC, "cos(omega*t)", self.clearance, "0.8", {"omega": self.omega}, **walls)
 
+    @property
+    def pull(self) -> flint.arb:
+        """f(c, 0), a ball: a_c = cos(omega t) - f(c, 0)."""
+        c = flint.arb(self.clearance)
+        return c + (flint.arb(3) / 10 * c**3 if self.family == "cubic" else 0)
+
+    def next_release(self, time: flint.arb) -> flint.arb:
+        """The time from which on a_c > 0: `time`, or the next zero of a_c, in balls."""
+        turn, zero = 2 * flint.arb.pi() / self.omega, self.pull.acos() / self.omega
+        turns = ((time + zero) / turn).floor()  # periods since the last rise of a_c
+        return time if time - turns * turn < zero else (turns + 1) * turn - zero
+
+    def quiet_after_rest(self) -> float:
+        """A time for which a mass that leaves at a zero of a_c stays off the wall: its third derivative is positive."""
+        third: float = self.motion(0.0, 0.0).third(0.0, 0.0, 0.25)
+        rise: float = self.omega * (1 - float(self.pull) ** 2) ** 0.5
+        return min(rise / (2 * (self.omega**2 + 2 * third + third**2)), 0.25)
+
     def back_from_touch(self, tau: float) -> Linear | Cubic:
         """The flight backwards from a touch of the wall at tau, or of the other wall where there is one."""
         return (self if self.upper is None else replace(self, wall=1 - self.wall)).motion(-tau, 0.0, -1)
 
 
-def check(count: int, seed: int, executor: Any = None, output: Any = None, between_walls: bool = False) -> list[Row]:
+def check(count: int, seed: int, executor: Any = None, output: Any = None, family: str = "reference") -> list[Row]:
     """Fly `count` states, rounded up to whole cases; a row a kind of state.
 
     Parameters
     ----------
     executor, output : as in `singimpact.cases.sweep`; an interrupted check goes on.
-    between_walls : of models with two walls.
+    family : see `FAMILIES`.
     """
-    first = BETWEEN_WALLS_FROM if between_walls else 0
+    first = FAMILIES[family][0]
     numbers = range(first, first - (-count // DRAW.each))
     table = sweep(partial(case, seed), numbers, executor, output)
     kinds = [kind_of(number) for number in numbers]
@@ -91,17 +115,24 @@ def check(count: int, seed: int, executor: Any = None, output: Any = None, betwe
 
 def kind_of(number: int) -> str:
     """Family and regime of a case."""
-    family = "cubic" if number % DRAW.cubic == 0 else "linear"
-    turn = number // DRAW.cubic if family == "cubic" else number
-    regimes, place = (WALL_REGIMES, " between walls") if number >= BETWEEN_WALLS_FROM else (REGIMES, "")
-    return f"{family} {regimes[turn % len(regimes)]}{place}"
+    force = "cubic" if number % DRAW.cubic == 0 else "linear"
+    turn = number // DRAW.cubic if force == "cubic" else number
+    _, added, regimes = FAMILIES[_family(number)]
+    return f"{force} {regimes[turn % len(regimes)]}{added}"
+
+
+def _family(number: int) -> str:
+    return max((first, name) for name, (first, _, _) in FAMILIES.items() if first <= number)[1]
 
 
 def case(seed: int, number: int) -> Array:
     """An array (states, COLUMNS); errors in units of what is allowed."""
-    family, regime = kind_of(number).split()[:2]
-    rng = np.random.default_rng([seed, number])
-    model, states = _drawn(rng, family, regime, number >= BETWEEN_WALLS_FROM)
+    force, regime = kind_of(number).split()[:2]
+    rng, family = np.random.default_rng([seed, number]), _family(number)
+    if family == "plastic":
+        model = Model(force, float(rng.uniform(0.3, 3.5)), float(rng.uniform(-0.7, 0.7)))
+        return np.array(release_rows(model, rng, regime))
+    model, states = _drawn(rng, force, regime, family == "between-walls")
     tau, v = np.array(states).T
     wall = None if model.upper is None else model.wall
     osc: Any = model.oscillator()
@@ -207,6 +238,45 @@ def _conditions(motion: Any, truth: tuple[Any, Any], state: tuple[float, float])
         total[0] += float(abs(time_by / time) * size)
         total[1] += float(abs((u_by + e * time_by) / u) * size)
     return total[0], total[1]
+
+
+def release_rows(model: Model, rng: np.random.Generator, regime: str) -> list[list[float]]:
+    """Rows as those of `case`, of releases from rest with restitution 0; in place of v the next release."""
+    # a_c is positive before the phase `zero`, and from its opposite on
+    turn, zero = 2 * pi / model.omega, acos(float(model.pull)) / model.omega
+    near = 10 ** rng.uniform(-14, -1, DRAW.each)
+    phases = {
+        "anywhere": rng.uniform(0, turn, DRAW.each),
+        "pressed": rng.uniform(zero, turn - zero, DRAW.each),
+        "rising": -zero + near,
+        "falling": zero - near,
+    }
+    times = phases[regime] + turn * rng.integers(-3, 4, DRAW.each)
+    releases = model.oscillator().replace(restitution=0).release_map(times)
+    with balls_at(DRAW.bits):
+        return [
+            [float(status), *_release_errors(model, tau, float(landing), float(later), int(status)), tau, 0.0, nan, nan]
+            for tau, landing, later, status in zip(times, releases.landing, releases.tau, releases.status, strict=True)
+        ]
+
+
+def _release_errors(model: Model, tau: float, landing: float, later: float, status: int) -> tuple[float, float, float]:
+    """Errors of the landing and of the release after it, in units of what is allowed; 1 if wrong."""
+    leaves = model.next_release(flint.arb(float(tau)))
+    motion = model.motion(leaves, 0.0)
+    truth = first_hit(motion, 0.0, model.horizon, 0.0 if leaves == tau else model.quiet_after_rest())
+    if truth is None:
+        return 0.0, 0.0, float(status == Status.hit and landing - float(leaves) < model.horizon)
+    if status != Status.hit:
+        return 0.0, 0.0, float(status != Status.unresolved)
+    time, lands = float(truth[0]), leaves + truth[0]
+    kappa = 1 + abs(float(motion.variations(truth[0])[0][0] / truth[1] * leaves)) / time
+    allowed = max(1e-14, 10 * EPSILON * (kappa + abs(landing) / time))
+    off = abs(float(flint.arb(landing) - lands)) / time / allowed
+    push, after = float(model.motion(lands, 0.0).at(0)[2]), model.next_release(lands)
+    # where a_c is 0 up to the error of the landing, both may be right
+    late = abs(float(flint.arb(later) - after)) / time / allowed if abs(push) > 1e-6 else 0.0
+    return off, late, float(max(off, late) > 100 and max(off, late) * allowed > DRAW.wrong)
 
 
 @dataclass(frozen=True)

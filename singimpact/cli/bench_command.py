@@ -218,10 +218,10 @@ if TYPE_CHECKING:
 @click.option("--keep", metavar="FILE.npz", help="Store results in this file, and resume from it.")
 @click.option(
     "--family",
-    type=click.Choice(["reference", "steep", "parametric", "between-walls"]),
+    type=click.Choice(["reference", "steep", "parametric", "between-walls", "plastic"]),
     default="reference",
     show_default=True,
-    help="Of random states: linear and cubic, steep layers, f with t, or linear and cubic between two walls.",
+    help="Of random states: linear and cubic, steep layers, f with t, linear and cubic between two walls, or at rest.",
 )
 @whole_option("--balls", 0, None, "Steep states flown in balls.", 1000)
 @whole_option("--digits-checks", 0, None, "States in balls that are also flown with digits=20.", 100)
@@ -256,7 +256,8 @@ def command(
     --keep belong to it. With `--family steep` it compares 20 families of steep models with a solver of small fixed
     steps, with `--family parametric` four in whose f t occurs or that have no t at all, and --balls of the states with
     ball arithmetic; --digit-pairs states are enclosed twice. `--family between-walls` has the solver of 60 digits for
-    models with two walls. The exit code is 1 if an impact is wrong.
+    models with two walls, `--family plastic` for releases from rest with restitution 0. The exit code is 1 if an
+    impact is wrong.
     """
     from singimpact.bench.groups import GROUPS, usual
     from singimpact.bench.measuring import FULL, QUICK
@@ -281,7 +282,7 @@ def command(
         values["states"], wrong = steep.data, wrong or steep.wrong
         texts.append(steep.text)
     elif "states" in chosen:
-        values["states"], text = _states(states, seed, workers, keep, family == "between-walls")
+        values["states"], text = _states(states, seed, workers, keep, family)
         wrong |= any(row["wrong"] for row in values["states"])
         texts.append(text)
     if directory is not None:
@@ -357,14 +358,14 @@ def _draw(found: list[Measured], place: Path) -> None:
 
 
 def _states(
-    states: int, seed: int, workers: int | None, keep: str | None, between_walls: bool
+    states: int, seed: int, workers: int | None, keep: str | None, family: str
 ) -> tuple[list[dict[str, Any]], str]:
     """Random states against the truth."""
     from singimpact.bench.random_states import check
     from singimpact.case_pools import WorkerPool
 
     with WorkerPool(workers) as pool:
-        rows = check(states, seed, pool, keep, between_walls)
+        rows = check(states, seed, pool, keep, family)
     header = ["states", "flown", "wrong", "unresolved", "flight time, worst", "v, worst"]
     cells = [
         [

@@ -42,11 +42,31 @@ def test_a_wrong_impact_is_seen() -> None:
 
 def test_no_state_between_walls_is_wrong() -> None:
     with ThreadPoolExecutor(1) as pool:
-        rows = random_states.check(300, 7, pool, between_walls=True)
-    assert {row.kind.split()[1] for row in rows} == set(random_states.WALL_REGIMES)
+        rows = random_states.check(300, 7, pool, family="between-walls")
+    assert {row.kind.split()[1] for row in rows} == set(random_states.FAMILIES["between-walls"][2])
     for row in rows:
         assert row.wrong == row.unresolved == 0
         assert max(row.time_error, row.velocity_error) < 1, row
+
+
+def test_no_release_from_rest_is_wrong() -> None:
+    with ThreadPoolExecutor(1) as pool:
+        rows = random_states.check(300, 7, pool, family="plastic")
+    assert {row.kind.split()[1] for row in rows} == set(random_states.FAMILIES["plastic"][2])
+    for row in rows:
+        assert row.wrong == row.unresolved == 0
+        assert max(row.time_error, row.velocity_error) < 1, row
+
+
+def test_a_wrong_release_is_seen() -> None:
+    model, hit = random_states.Model("linear", 2.0, 0.3), int(random_states.Status.hit)
+    step = model.oscillator().replace(restitution=0).release_map(0.1)
+    landing, later = float(step.landing), float(step.tau)
+    with flint.ctx.workprec(320):
+        assert random_states._release_errors(model, 0.1, landing, later, hit)[2] == 0
+        assert random_states._release_errors(model, 0.1, landing + 1e-4, later, hit)[2] == 1
+        assert random_states._release_errors(model, 0.1, landing, later + 1e-4, hit)[2] == 1
+        assert random_states._release_errors(model, 0.1, landing, later + 1e-4, 1)[2] == 1
 
 
 def test_an_impact_at_the_wrong_wall_is_seen() -> None:

@@ -8,12 +8,13 @@ import flint
 from singimpact.algebra.precision import bits_of_balls
 
 
-def first_hit(motion: "Linear | Cubic | Above", v: float, horizon: float) -> tuple[Any, Any] | None:
+def first_hit(motion: "Linear | Cubic | Above", v: float, horizon: float, quiet: float = 0.0) -> tuple[Any, Any] | None:
     """Time and velocity of the first hit; None when there is none before the horizon.
 
     Parameters
     ----------
     motion : `Linear` or `Cubic`, launched with velocity v >= 0, a > 0 for v = 0; or its distance from another wall.
+    quiet : a time without a hit, where it is known, for a release with a = 0.
 
     Raises
     ------
@@ -27,8 +28,10 @@ def first_hit(motion: "Linear | Cubic | Above", v: float, horizon: float) -> tup
     ...     print(first_hit(Linear(2.0, 0.0, 1.0, 0.5), 0.5, 100.0)[0].str(20, radius=False))
     1.1115158754205710871
     """
-    begin, width = 0.0, min(horizon, 0.25)
-    if not isinstance(motion, Above):
+    begin, width = quiet, min(horizon, 0.25)
+    if quiet > 0:
+        width = quiet
+    elif not isinstance(motion, Above):
         begin = _without_root(v, float(motion.at(0)[2]), motion)
         width = min(begin, 0.25)
     while begin < horizon:
