@@ -11,7 +11,7 @@ _FILES = {
     "groups": "GROUPS measured usual",
     "groups.impact_map_rows": "sizes_of taylor_stepper",
     "groups.limit_rows": "BEFORE_SERIES SCRIPTS SERIES reference script",
-    "groups.series_rows": "LIMITED",
+    "groups.series_rows": "Task",
     "measuring": (
         "Aim Case Counted EPSILON Effort FULL Measured Method QUICK Timed condition cpu_seconds measure relative_error"
     ),

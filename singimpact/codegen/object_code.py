@@ -71,24 +71,11 @@ def _machine() -> Any:
 
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
-    return _of_target(llvm.get_process_triple(), llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten())
+    return machine_of(llvm.get_process_triple(), llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten())
 
 
-def machine_for(triple: str, processor: str) -> Any:
-    """The machine of another platform, to emit object code for it.
-
-    Raises
-    ------
-    RuntimeError : this build of llvmlite knows nothing of it.
-    """
-    import llvmlite.binding as llvm
-
-    llvm.initialize_all_targets()
-    llvm.initialize_all_asmprinters()
-    return _of_target(triple, processor, "")
-
-
-def _of_target(triple: str, processor: str, features: str) -> Any:
+def machine_of(triple: str, processor: str, features: str) -> Any:
+    """The machine of a platform, whose part of LLVM has been initialized; names are those of LLVM."""
     import llvmlite.binding as llvm
 
     target = llvm.Target.from_triple(triple)

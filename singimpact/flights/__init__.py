@@ -39,7 +39,7 @@ _FILES = {
     "orbits": "iterate orbit_segment",
     "rebound_law": "rebound speed_before",
     "results": "counted",
-    "shipped": "PLATFORMS index_of objects platforms_here shipped_code sources_digest texts why_not",
+    "shipped": "PLATFORMS platforms_here shipped_code sources_digest why_not",
     "states": "States",
 }
 __getattr__ = names_of(__name__, _FILES)

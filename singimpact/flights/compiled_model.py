@@ -418,12 +418,12 @@ class CompiledModel:
         """
         if self.linear and tau.size <= TABLES.alone and impacts <= TABLES.block:
             return self._iterate_alone(tau, v, impacts)
-        abreast = self.linear and len(self.walls) == 1  # a batch of states is one of states at one wall
-        size = -(-tau.size // LANES) * LANES if abreast else tau.size
+        # linear models fly whole batches of states
+        name, lanes, least = ("batch_entry", LANES, TABLES.batched) if self.linear else (self.main, 1, TABLES.shared)
+        size = -(-tau.size // lanes) * lanes
         times, speeds, sides = np.resize(tau, size), np.resize(v, size), np.zeros(size)
         status = np.where(speeds > 0, 0, AT_REST).astype(np.int8)
         status[tau.size :] = AT_REST
-        name = "batch_entry" if abreast else self.main
         entry, begin = self._compiled(name, 0.0, self.laws), 0
         while begin < size:
             few = slice(begin, min(begin + LANES, size))
@@ -433,19 +433,16 @@ class CompiledModel:
                 self.interpreter.iterate(times[few], speeds[few], impacts, self.rho, sides[few], status[few])
                 begin = few.stop
                 continue
-            block = max(LANES, TABLES.block // max(impacts, 1) // LANES * LANES)
-            end = min(begin + block * threads_now(), size)
 
-            def fly(lanes: slice, entry: Callable[..., int] = entry) -> None:
-                """Orbits of whole batches."""
-                chosen = slice(lanes.start * LANES, min(lanes.stop * LANES, size)) if abreast else lanes
-                codes = status[chosen]
-                states = times[chosen], speeds[chosen], self.rho
+            def fly(part: slice, entry: Callable[..., int] = entry) -> None:
+                """Orbits of so many times `lanes` states."""
+                chosen = slice(part.start * lanes, part.stop * lanes)
+                states, codes = (times[chosen], speeds[chosen], self.rho), status[chosen]
                 self._call(entry, (entries.ITERATE, codes.size, impacts), states, sides[chosen], codes)
 
-            lanes = LANES if abreast else 1
-            least = (TABLES.batched if abreast else TABLES.shared) // max(impacts, 1) // lanes
-            shared_out(fly, begin // lanes, -(-end // lanes), max(1, least))
+            block = max(LANES, TABLES.block // max(impacts, 1) // LANES * LANES)
+            end = min(begin + block * threads_now(), size)
+            shared_out(fly, begin // lanes, end // lanes, max(1, least // max(impacts, 1) // lanes))
             begin = end
         return times[: tau.size], speeds[: tau.size], status[: tau.size], sides[: tau.size]
 

@@ -28,26 +28,23 @@ class Platform:
 
     Parameters
     ----------
-    triple, processor : its names to LLVM. needs : features that its processor must have, as LLVM names them.
-    entries : that are made for it; empty for all.
+    needs : features that its processor must have, as LLVM names them. entries : that are made for it.
     """
 
-    triple: str
-    processor: str
     needs: tuple[str, ...] = ()
-    entries: tuple[str, ...] = ()
+    entries: tuple[str, ...] = (*Emitted().entries, *Emitted(steps=True).entries)
 
 
 V3 = ("avx2", "bmi", "bmi2", "f16c", "fma", "lzcnt", "movbe", "popcnt", "sse4.2")
 V4 = (*V3, "avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl")
 BATCHES = ("batch_entry",)  # lanes of states: twice as wide registers make it half again as fast, and nothing else
 PLATFORMS = {
-    "linux-x86-64-v4": Platform("x86_64-unknown-linux-gnu", "x86-64-v4", V4, BATCHES),
-    "linux-x86-64-v3": Platform("x86_64-unknown-linux-gnu", "x86-64-v3", V3),
-    "win32-x86-64-v4": Platform("x86_64-pc-windows-msvc", "x86-64-v4", V4, BATCHES),
-    "win32-x86-64-v3": Platform("x86_64-pc-windows-msvc", "x86-64-v3", V3),
-    "linux-aarch64": Platform("aarch64-unknown-linux-gnu", "generic"),
-    "darwin-aarch64": Platform("arm64-apple-darwin", "apple-m1"),
+    "linux-x86-64-v4": Platform(V4, BATCHES),
+    "linux-x86-64-v3": Platform(V3),
+    "win32-x86-64-v4": Platform(V4, BATCHES),
+    "win32-x86-64-v3": Platform(V3),
+    "linux-aarch64": Platform(),
+    "darwin-aarch64": Platform(),
 }
 """The first that fits a machine and has an entry is loaded there."""
 NAMES = {"x86_64": "x86-64", "amd64": "x86-64", "aarch64": "aarch64", "arm64": "aarch64"}
@@ -63,7 +60,7 @@ def shipped_code(entry: str) -> bytes | None:
     """
     index = _index()
     for name in platforms_here():
-        if entry in (PLATFORMS[name].entries or (entry,)) and (digest := index.get(f"{entry}.{name}")):
+        if entry in PLATFORMS[name].entries and (digest := index.get(f"{entry}.{name}")):
             content = _unpacked(FOLDER / f"{entry}.{name}.xz")
             if content is not None and hashlib.sha256(content).hexdigest() == digest:
                 return content
@@ -130,37 +127,3 @@ def why_not() -> str:
     if not platforms_here():
         return f"none comes with the package for {sys.platform} on this processor ({platform.machine()})"
     return "that of the package is not of its sources" if not _index() else "that of the package cannot be read"
-
-
-# ---- how it is made
-
-
-def texts() -> dict[str, str]:
-    """Texts of LLVM by entry, made by numba on this machine in a minute; in a new process they are always the same."""
-    return {
-        entry: compiler.text(entry)
-        for steps in (False, True)
-        for compiler in (compilers.KernelCompiler(steps),)
-        for entry in Emitted(steps=steps).entries
-    }
-
-
-def objects(made_from: dict[str, str], names: tuple[str, ...] = tuple(PLATFORMS)) -> dict[str, bytes]:
-    """Object code by `entry.platform`, of texts of LLVM."""
-    return {
-        f"{entry}.{name}": object_code.emitted(text, entry, object_code.machine_for(target.triple, target.processor))
-        for name, target in ((name, PLATFORMS[name]) for name in names)
-        for entry, text in made_from.items()
-        if entry in (target.entries or (entry,))
-    }
-
-
-def index_of(contents: dict[str, bytes]) -> dict[str, Any]:
-    """The index of object code by `entry.platform`: digests of the sources and of each file, and what made them."""
-    from importlib.metadata import version
-
-    return {
-        "sources": sources_digest(),
-        "made with": {name: version(name) for name in ("numba", "llvmlite")},
-        "objects": {name: hashlib.sha256(content).hexdigest() for name, content in sorted(contents.items())},
-    }

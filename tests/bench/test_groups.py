@@ -39,7 +39,7 @@ COSTLY = ("public", "series")
 EVENTS = {"scipy DOP853, terminal event", "heyoka, terminal event"}
 PEERS = {
     "public": {"heyoka", "scipy", "numba"},
-    "chatter": {"scipy DOP853, 1e-9", "heyoka, 1e-9", "mpmath findroot, dps 30", *EVENTS},
+    "chatter": {"scipy DOP853, 1e-9", "heyoka, 1e-9", *EVENTS},
     "series": {"sympy, integrals and series", "sympy, implicit function"},
     "limit": {"reference"},  # a command of .ci/check measures it
 }

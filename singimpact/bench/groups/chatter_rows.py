@@ -5,10 +5,7 @@ wanted; and c = 0.7 or Duffing's model, from other states in every timed call. A
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
-from math import cos
 from typing import Any
-
-import mpmath
 
 from singimpact.bench.drawn import CHATTERING, Draws, Problem, States, counted, model, pressing, values
 from singimpact.bench.groups.impact_map_rows import ACCURACY, HEYOKA, SCIPY, taylor_stepper
@@ -47,24 +44,13 @@ def _case(r: str, effort: Effort) -> Case:
         own,
         lambda: [_flown("scipy DOP853, 1e-9", runge_kutta.stepper("linear", 1e-9), problem, s) for s in stops],
         lambda: [_flown("heyoka, 1e-9", taylor_events.stepper("linear", 1e-9), problem, s) for s in stops],
-        lambda: [_in_digits(problem, stop, 30) for stop in ((1e-6,) if effort.quick else (1e-6, 1e-9, 1e-12))],
     )
     kappa = condition(lambda tau, v: float(osc.chatter_limit(tau, v).tau), 1.2, 0.01, 1e-4)
     return Case(f"linear, r = {r}", methods, [values()[NAME.format(r)]], [kappa], skipped)
 
 
 def _flown(name: str, fly: Fly, problem: Problem, stop: float) -> Method:
-    return Method(name, f"until v < {stop:.0e}", lambda: [followed_impacts.chatter_limit(fly, problem, stop, cos)])
-
-
-def _in_digits(problem: Problem, stop: float, digits: int) -> Method:
-    def run() -> list[Any]:
-        with mpmath.workdps(digits):
-            c, r, tau, v = (mpmath.mpf(text) for text in ("0.3", str(problem.restitution), *STATE))
-            exact = replace(problem, clearance=c, restitution=r, tau=tau, v=v)
-            return [followed_impacts.chatter_limit(root_of_closed_form, exact, stop, mpmath.cos)]
-
-    return Method(f"mpmath findroot, dps {digits}", f"until v < {stop:.0e}", run)
+    return Method(name, f"until v < {stop:.0e}", lambda: [followed_impacts.chatter_limit(fly, problem, stop)])
 
 
 CALLS = 20  # of a timed run of a state a call
@@ -113,7 +99,7 @@ def summed(name: str, fly: Fly, draw: Draws) -> Method:
     return Method(
         name,
         setting,
-        lambda problems: [followed_impacts.chatter_limit(fly, each, TO * each.v, cos) for each in problems],
+        lambda problems: [followed_impacts.chatter_limit(fly, each, TO * each.v) for each in problems],
         draw=lambda: draw().problems(),
     )
 
@@ -158,54 +144,3 @@ def between(name: str, fly: Fly, draw: Draws) -> Method:
         lambda problems: [followed_impacts.threshold(fly, replace(each, v=GUESS), end, WIDTH) for each in problems],
         draw=lambda: draw().problems(),
     )
-
-
-# mpmath at the working precision: `findroot` on the closed form of a flight.
-
-SCAN = 0.05  # step of the scan for a change of sign, as a user would choose it: a hundredth of a period
-LONGEST = 1000.0
-GUARD = 20  # digits that (x - c)/s may lose: without them the secant never settles for v below 1e-3, and fails
-
-
-def root_of_closed_form(problem: Problem) -> tuple[Any, Any]:
-    """First root of (x - c)/s of the linear oscillator, omega != 1, from a guess; time and velocity, nan if none.
-
-    The guess is 2v/|a_c| where the obstacle presses, else the first change of sign of a scan.
-    """
-    with mpmath.extradps(GUARD):
-        found = _closed_form(problem, mpmath.mpf(10) ** (GUARD - mpmath.mp.dps))
-    return +found[0], +found[1]
-
-
-def _closed_form(problem: Problem, precise: Any) -> tuple[Any, Any]:
-    omega, c, tau, v = (mpmath.mpf(value) for value in (problem.omega, problem.clearance, problem.tau, problem.v))
-    size = 1 / (1 - omega**2)
-    by_cos, by_sin = c - size * mpmath.cos(omega * tau), v + size * omega * mpmath.sin(omega * tau)
-
-    def lifted(s: Any) -> Any:
-        return (size * mpmath.cos(omega * (tau + s)) + by_cos * mpmath.cos(s) + by_sin * mpmath.sin(s) - c) / s
-
-    a = mpmath.cos(omega * tau) - c
-    near = -2 * v / a if a < 0 else mpmath.inf
-    guesses = (near, near * 1.05) if near < SCAN else _scanned(lifted)
-    try:
-        time = mpmath.findroot(lifted, guesses, tol=precise * guesses[0])
-    except (ValueError, ZeroDivisionError):  # there is none, or it did not converge
-        return mpmath.nan, mpmath.nan
-    slope = -size * omega * mpmath.sin(omega * (tau + time)) - by_cos * mpmath.sin(time) + by_sin * mpmath.cos(time)
-    return time, slope
-
-
-def _scanned(lifted: Any) -> tuple[Any, Any]:
-    """The ends of the first step of the scan at which x < c.
-
-    Raises
-    ------
-    ValueError : none before the longest flight.
-    """
-    s = mpmath.mpf(SCAN)
-    while s < LONGEST:
-        if lifted(s) < 0:
-            return s - SCAN + mpmath.eps, s
-        s += SCAN
-    raise ValueError("no change of sign")

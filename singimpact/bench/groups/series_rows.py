@@ -5,7 +5,7 @@ judged by its value: v_c at the end of a flight from (-0.2, 0.01) that was flown
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from itertools import groupby
 
@@ -78,7 +78,6 @@ class Task:
     Attributes
     ----------
     case, method, order : as the table shows them. made : the statement that is timed. before, judged : around it.
-    limit : CPU seconds that it may take; None where it is shown for comparison.
     """
 
     case: str
@@ -87,7 +86,6 @@ class Task:
     made: str
     before: str = OURS
     judged: str = "answer = None"
-    limit: float | None = None
 
     def cost(self) -> Cost:
         """CPU seconds, megabytes, and the value as text in a list."""
@@ -161,41 +159,6 @@ TASKS = (
     ),
 )
 QUICK = (2, 8)  # orders of a quick look
-
-# what may not grow slower unseen, and has no value at a point to be judged by
-LIMITED = (
-    replace(_symbols(14), limit=1.0),
-    replace(_model(12), limit=0.05),
-    replace(_curve(32, "EXACT"), limit=1.0),
-    replace(_curve(64, "Balls(256)"), limit=0.5),
-    replace(_curve(20, "DOUBLES"), limit=0.01),
-    Task("v_c, generic jets", "kernel", 8, "sheet(Contact.generic(0, 8), 8).xdot", limit=0.05),
-    Task("v_c, generic jets", "kernel", 12, "sheet(Contact.generic(0, 12), 12).xdot", limit=0.5),
-    Task(
-        "v_c, cubic model, its parameters letters",
-        "kernel",
-        12,
-        'sheet(LetteredModel(LETTERED, ["d", "k"], 1).contact(12), 12).xdot',
-        OURS + "from singimpact.theory.constants import LetteredModel",
-        limit=0.05,
-    ),
-    Task(
-        "gamma, symbols for jets and r",
-        "kernel",
-        8,
-        "symbolic_curve(1, 8)",
-        OURS + "from singimpact.theory.gamma_in_symbols import symbolic_curve",
-        limit=3.0,
-    ),
-    Task(
-        "chatter completion, symbols for jets and r",
-        "kernel",
-        6,
-        "symbolic_completion(6)",
-        OURS + "from singimpact.theory.completion import symbolic_completion",
-        limit=0.3,
-    ),
-)
 
 
 def cases(effort: Effort) -> Iterator[Case]:

@@ -3,16 +3,15 @@
 from collections.abc import Callable
 from dataclasses import replace
 from math import cos
-from typing import Any
 
 from singimpact.bench.drawn import Problem
 
-Fly = Callable[[Problem], tuple[Any, Any]]
+Fly = Callable[[Problem], tuple[float, float]]
 MOST = 2000  # impacts, after which a peer that does not get on is given up; the right answers take below 300
 DEAD = 0.1  # of the width that is asked for: on gamma v falls with every impact, so a larger one moves the answer
 
 
-def chatter_limit(fly: Fly, problem: Problem, stop: float, cos: Callable[[Any], Any]) -> Any:
+def chatter_limit(fly: Fly, problem: Problem, stop: float) -> float:
     """Impacts until v < stop, and the rest of the chatter by its first term, 2v/(|a|(1 - r))."""
     tau, v = problem.tau, problem.v
     for _ in range(MOST):
@@ -24,7 +23,7 @@ def chatter_limit(fly: Fly, problem: Problem, stop: float, cos: Callable[[Any], 
     return tau - 2 * v / (a * (1 - problem.restitution))
 
 
-def threshold(fly: Fly, problem: Problem, end: float, width: float) -> Any:
+def threshold(fly: Fly, problem: Problem, end: float, width: float) -> float:
     """Bisection between a v from which chatter dies before `end` and one that lands after it, to a relative width."""
     low, high, stop = 0 * problem.v, problem.v, width * problem.v * DEAD
     while not _lands_after(fly, replace(problem, v=high), end, stop):

@@ -33,6 +33,7 @@ from singimpact.flights.kernels.state import (
     V_COS,
     V_SIN,
     V_STEADY,
+    WALL,
     X_BY_V,
     X_BY_X,
     X_COS,
@@ -43,6 +44,7 @@ from singimpact.flights.kernels.state import (
     Array,
     Batch,
     Linear,
+    Mirror,
     Table,
     V,
 )
@@ -56,7 +58,8 @@ def isolate(batch: Batch, p: Linear, ulp: float, gap: float) -> int:
     step, last, jerk, highest = table.step, len(table.rows) - 1, 0.0, 0.0
     # 2.3: on the first stride the remainder is compared with a multiple of the distance from the launch
     sixth = 2.3 * step * step * step * step * step * step / 46080.0
-    by_x, by_u, steady = sixth * table.sixth[0], sixth * table.sixth[1], sixth * table.sixth[2]
+    by_x, by_u = sixth * table.sixth[0], sixth * table.sixth[1]
+    mirror, steady = batch.mirror, sixth * max(table.sixth[2], batch.mirror.table.sixth[2])
     for j in range(len(p.waves)):
         jerk += p.waves[j, RATE] * (abs(p.waves[j, COSINE]) + abs(p.waves[j, SINE]))
     flying = 0
@@ -67,11 +70,12 @@ def isolate(batch: Batch, p: Linear, ulp: float, gap: float) -> int:
     if launched < 0:
         highest = lift_starts(lane, p)
     for m in range(last):
-        ahead(lane, wave, p, table, m + 1)
+        ahead(lane, wave, p, table, mirror, m + 1)
         row = table.rows[m + 1]
         if launched < 0:
             lift(lane, p, row)
-        by_v, rest = 4 * ulp * abs(row[X_BY_V]), 4 * ulp * (row[SIZE_STEADY] + highest * row[SIZE_X]) + steady
+        by_v, size = 4 * ulp * abs(row[X_BY_V]), max(row[SIZE_STEADY], mirror.table.rows[m + 1, SIZE_STEADY])
+        rest = 4 * ulp * (size + highest * row[SIZE_X]) + steady
         if gap < inf:
             watch_other_wall(lane, step, gap, by_x, by_u, by_v, rest)
         going, doubtful = go_on(lane, step, by_x, by_u, by_v, rest)
@@ -84,15 +88,20 @@ def isolate(batch: Batch, p: Linear, ulp: float, gap: float) -> int:
     return flying
 
 
-def ahead(lane: Array, wave: Array, p: Linear, table: Table, m: int) -> None:
+def ahead(lane: Array, wave: Array, p: Linear, table: Table, mirror: Mirror, m: int) -> None:
     """x - c, x' and x'' of the states that go on, m steps after their launch."""
     damping, stiffness, row = p.damping, p.stiffness, table.rows[m]
-    z_by_v, z_rest, u_by_v, u_rest = row[X_BY_V], row[X_STEADY], row[V_BY_V], row[V_STEADY]
+    z_by_v, u_by_v, z_rest, u_rest = row[X_BY_V], row[V_BY_V], row[X_STEADY], row[V_STEADY]
+    z_other, u_other = mirror.table.rows[m, X_STEADY], mirror.table.rows[m, V_STEADY]
     e_by_v, e_rest = -damping * u_by_v - stiffness * z_by_v, p.steady - damping * u_rest - stiffness * z_rest
+    e_other = mirror.steady - damping * u_other - stiffness * z_other
     for k in range(LANES):
         # what `if` chooses from is computed first: a choice between computations would become slow masked stores
         go, v, z, u, e = lane[MODE + k] == 0.0, lane[V + k], lane[Z1 + k], lane[U1 + k], lane[E1 + k]
-        z1, u1, e1 = v * z_by_v + z_rest, v * u_by_v + u_rest, v * e_by_v + e_rest
+        here = lane[WALL + k] > 0
+        z1 = v * z_by_v + (z_rest if here else z_other)
+        u1 = v * u_by_v + (u_rest if here else u_other)
+        e1 = v * e_by_v + (e_rest if here else e_other)
         lane[Z1 + k], lane[U1 + k], lane[E1 + k] = z1 if go else z, u1 if go else u, e1 if go else e
     for j in range(len(p.waves)):
         turn, c, s = table.waves[m][j], j, len(p.waves) + j

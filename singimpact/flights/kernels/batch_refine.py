@@ -20,10 +20,12 @@ from singimpact.flights.kernels.state import (
     TURN_SIN,
     U0,
     U1,
+    WALL,
     Z0,
     Z1,
     Array,
     Batch,
+    Mirror,
 )
 
 
@@ -41,13 +43,13 @@ def turn_waves(lane: Array, wave: Array, local: Array, turns: Array) -> None:
             local[s, k] = wave[s, k] * turn_c + wave[c, k] * turn_s
 
 
-def expand(lane: Array, local: Array, series: Array, X: Array) -> None:
+def expand(lane: Array, local: Array, series: Array, mirror: Mirror, X: Array) -> None:
     """Taylor coefficients of x - c at the start of the step."""
     count = len(local) // 2
     for i in range(3, len(series)):
-        by_z, by_u, rest = series[i, 0], series[i, 1], series[i, 2]
+        by_z, by_u, rest, other = series[i, 0], series[i, 1], series[i, 2], mirror.series[i, 2]
         for k in range(LANES):
-            X[i, k] = lane[Z0 + k] * by_z + lane[U0 + k] * by_u + rest
+            X[i, k] = lane[Z0 + k] * by_z + lane[U0 + k] * by_u + (rest if lane[WALL + k] > 0 else other)
         for j in range(count):
             c, s, by_c, by_s = j, count + j, series[i, 3 + 2 * j], series[i, 4 + 2 * j]
             for k in range(LANES):

@@ -24,18 +24,18 @@ from singimpact.flights.kernels.state import (
 )
 from singimpact.generated.completion import linear_chatter_terms
 
+# Codes of `chatter_end`: the rest is summed up; a_c no longer presses; all impacts are flown; a term leaves the range
+# of doubles; more impacts than rows; the orbit repeats itself.
 COMPLETED, LIFTED, EXHAUSTED, TOO_WIDE, NO_ROOM, REPEATS = 60, 61, 62, 63, 64, 65
-"""Codes of `chatter_end`: the rest is summed up; a_c no longer presses; all impacts are flown; a term leaves the range
-of doubles; more impacts than rows; the orbit repeats itself."""
+# Settings: the part of the time on which a_c changes that the chatter left must be below to be summed up (0 for never),
+# impacts flown at most, and the factor by which errors are called larger.
 NEAR, MOST, TRUST = range(3)
-"""Settings: the part of the time on which a_c changes that the chatter left must be below to be summed up (0 for
-never), impacts flown at most, and the factor by which errors are called larger."""
 SETTINGS_OF_CHATTER = 3
+# Impacts flown at most between two sums.
 BLOCK = 4096
-"""Impacts flown at most between two sums."""
+# An orbit repeats itself whose phase, in periods, and velocity come back to this: it neither accumulates nor lifts off,
+# for a chatter multiplies velocities by r.
 CLOSE = 1e-13
-"""An orbit repeats itself whose phase, in periods, and velocity come back to this: it neither accumulates nor lifts
-off, for a chatter multiplies velocities by r."""
 
 
 def linear_limits(tau: Any, v: Any, search: Any, model: Any, work: Any, rows: Any, out: Any, status: Any) -> int:

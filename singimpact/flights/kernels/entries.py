@@ -40,22 +40,22 @@ from singimpact.flights.kernels.layout import (
 from singimpact.flights.kernels.linear import place_of, response
 from singimpact.flights.kernels.orbits import iterate, orbit_segment
 from singimpact.flights.kernels.refine import fill_fine
-from singimpact.flights.kernels.state import ACROSS, Search
+from singimpact.flights.kernels.state import ACROSS, Array, Linear, Search, Table
 from singimpact.flights.kernels.tables import bounds, expansions, tabulate
 from singimpact.flights.kernels.taylor import follow, taylor_flight
 from singimpact.flights.kernels.variational import derivatives_at, judge
 from singimpact.flights.kernels.waves import reduced_twice
 
+# Kinds of work: fill the tables of a model, of its batches; first hits of many states; impacts of one orbit; the last
+# states of many orbits; derivatives of x and x' at given times; x and x' along one flight; errors and conditions of
+# hits of a Taylor flow; flights from rest; brackets of gamma; ends of chatter; flights that start off the wall; x and
+# x' of many flights at given times.
 (PREPARE, PREPARE_BATCH, HITS, SEGMENT, ITERATE, VARIATIONS, FOLLOW, JUDGE, RELEASES, BRACKET, LIMIT, DROPS,
  PLACES) = range(13)  # fmt: skip
-"""Kinds of work: fill the tables of a model, of its batches; first hits of many states; impacts of one orbit; the last
-states of many orbits; derivatives of x and x' at given times; x and x' along one flight; errors and conditions of hits
-of a Taylor flow; flights from rest; brackets of gamma; ends of chatter; flights that start off the wall; x and x' of
-many flights at given times."""
 
 
 def linear_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, out: Any, status: Any) -> int:
-    """PREPARE, HITS, DROPS, SEGMENT, ITERATE, RELEASES, PLACES or VARIATIONS of a linear model.
+    """PREPARE, HITS, DROPS, SEGMENT, RELEASES, PLACES or VARIATIONS of a linear model.
 
     Parameters
     ----------
@@ -72,19 +72,12 @@ def linear_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, 
     model, work = linear_model(flat, sizes), scratch_of(scratch, sizes)
     models = model, other_linear_model(flat, sizes, model)
     if kind == SEGMENT:
-        laws = laws_of(w, 1, sizes, model)
-        flown, code = orbit_segment(tau[0], v[0], w[0], laws, models, work, block(out, 0, (count, 12)))
-        status[0] = code
-        return int(flown)
+        return segment(tau, v, w, laws_of(w, 1, sizes, model), models, work, block(out, 0, (count, 12)), status)
     if kind == PREPARE:
         if model.rules.gap < inf:
             prepare(models[1], work)
         return prepare(model, work)
     states, speeds, codes = block(tau, 0, (count,)), block(v, 0, (count,)), block(status, 0, (count,))
-    if kind == ITERATE:
-        laws = laws_of(w, 0, sizes, model)
-        iterate(states, speeds, sizes[IMPACTS], laws, models, work, block(out, 0, (count,)), codes)
-        return 0
     if kind in (HITS, DROPS):
         heights = block(w, 0, (count if kind == DROPS else 0,))
         return linear_hits(states, speeds, heights, model, work, block(out, 0, (10, count)), codes)
@@ -95,21 +88,30 @@ def linear_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, 
     return linear_variations(states, speeds, block(w, 0, (count,)), model, work, block(out, 0, (count, 4)))
 
 
+def segment(tau: Any, v: Any, w: Any, laws: Any, models: Any, work: Any, out: Any, status: Any) -> int:
+    """`orbits.orbit_segment` of one state."""
+    flown, status[0] = orbit_segment(tau[0], v[0], w[0], laws, models, work, out)
+    return int(flown)
+
+
 def batch_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, out: Any, status: Any) -> int:
     """PREPARE_BATCH, HITS, DROPS or ITERATE, whose last states come in place of tau, v; w as in `linear_entry`."""
     count = sizes[COUNT]
     model, work = linear_model(flat, sizes), scratch_of(scratch, sizes)
-    batch = batch_model(flat, scratch, sizes, work, -1.0 if sizes[KIND] == DROPS else 0.0)
+    models = model, other_linear_model(flat, sizes, model)
+    batch = batch_model(flat, scratch, sizes, work, -1.0 if sizes[KIND] == DROPS else 0.0, model.rules.gap < inf)
     if sizes[KIND] == PREPARE_BATCH:
-        tabulate(model.numbers, batch.table)
-        bounds(model.numbers, batch.table)
-        expansions(model.numbers, batch.series)
         # states that a batch cannot decide are flown one by one
+        if model.rules.gap < inf:
+            prepare_batch(models[1].numbers, batch.mirror.table, batch.mirror.series)
+            prepare(models[1], work)
+        prepare_batch(model.numbers, batch.table, batch.series)
         return prepare(model, work)
     states, speeds, codes = block(tau, 0, (count,)), block(v, 0, (count,)), block(status, 0, (count,))
     if sizes[KIND] in (HITS, DROPS):
         return hit_batches(states, speeds, block(w, 0, (count,)), model, batch, block(out, 0, (10, count)), codes)
-    fly_batches(states, speeds, sizes[IMPACTS], block(w, 0, (sizes[RHO],)), model, batch, codes)
+    laws, walls = laws_of(w, 0, sizes, model), block(out, 0, (count,))
+    fly_batches(states, speeds, sizes[IMPACTS], laws, models, batch, walls, codes)
     return 0
 
 
@@ -138,6 +140,13 @@ def prepare(model: Any, work: Any) -> int:
     bounds(model.numbers, model.table)
     fill_fine(model.numbers, model.rest, model.table.step, model.fine, work.twice)
     return 0
+
+
+def prepare_batch(numbers: Linear, table: Table, series: Array) -> None:
+    """Fills the tables of a batch."""
+    tabulate(numbers, table)
+    bounds(numbers, table)
+    expansions(numbers, series)
 
 
 def linear_hits(tau: Any, v: Any, heights: Any, model: Any, work: Any, out: Any, status: Any) -> int:
@@ -221,10 +230,7 @@ def taylor_entry(sizes: Any, flat: Any, scratch: Any, tau: Any, v: Any, w: Any, 
     model, work = taylor_model(flat, sizes), scratch_of(scratch, sizes)
     models = model, other_taylor_model(flat, sizes, model)
     if kind == SEGMENT:
-        laws = laws_of(w, 1, sizes, model)
-        flown, code = orbit_segment(tau[0], v[0], w[0], laws, models, work, block(out, 0, (count, 12)))
-        status[0] = code
-        return int(flown)
+        return segment(tau, v, w, laws_of(w, 1, sizes, model), models, work, block(out, 0, (count, 12)), status)
     states, speeds, codes = block(tau, 0, (count,)), block(v, 0, (count,)), block(status, 0, (count,))
     if kind == ITERATE:
         laws = laws_of(w, 0, sizes, model)

@@ -22,17 +22,17 @@ from singimpact.flights.kernels.state import (
 from singimpact.flights.kernels.tabulated import root_after_launch
 from singimpact.flights.kernels.waves import wall_acceleration
 
+# Codes of `side_of_gamma`.
 BELOW, ABOVE, SPENT = 50, 51, 52
-"""Codes of `side_of_gamma`."""
+# Settings: the part of the time to the end in which chatter must end, the relative width to stop at, impacts flown at
+# most from one velocity, the width to begin Newton's method at, the distance from the end at which the series holds (0:
+# none is known), the contact order j, and the series from sigma^(j + 1) on.
 WITHIN, NARROW, SPENDING, COARSE, REACH, CONTACT, SERIES = range(7)
-"""Settings: the part of the time to the end in which chatter must end, the relative width to stop at, impacts flown at
-most from one velocity, the width to begin Newton's method at, the distance from the end at which the series holds (0:
-none is known), the contact order j, and the series from sigma^(j + 1) on."""
+# Coefficients of the series.
 TERMS_OF_GAMMA = 18
-"""Coefficients of the series."""
 SETTINGS_OF_GAMMA = SERIES + TERMS_OF_GAMMA
+# A step of Newton's method below this part of v is the last: the next would be its square.
 SETTLED = 1e-9
-"""A step of Newton's method below this part of v is the last: the next would be its square."""
 
 
 def side_of_gamma(tau: float, v: float, end: float, most: int, search: Any, model: Any, work: Any) -> int:

@@ -34,9 +34,9 @@ from singimpact.flights.kernels.variational import rounding
 from singimpact.flights.kernels.waves import wall_acceleration
 
 UNIT = 2.0**-52
+# Codes beside those of `taylor_flight`: balls must place the hit; the chatter left is short enough to be summed; a_c is
+# needed to more digits than its sum has; a state with v = 0, which is not flown.
 NOT_REFINED, PRESSED, CANCELS, AT_REST = 30, 31, 32, 40
-"""Codes beside those of `taylor_flight`: balls must place the hit; the chatter left is short enough to be summed; a_c
-is needed to more digits than its sum has; a state with v = 0, which is not flown."""
 
 
 def next_hit(t: float, t_low: float, v: float, near: float, model: Any, work: Any) -> Any:

@@ -18,6 +18,7 @@ from singimpact.flights.kernels.state import (
     Columns,
     Flying,
     Linear,
+    Mirror,
     Model,
     Rules,
     Table,
@@ -25,13 +26,13 @@ from singimpact.flights.kernels.state import (
     Work,
 )
 
+# Entries of `sizes`: the kind of work; states, impacts or times; waves; rows of the tables and of the work of a flight;
+# room for Taylor coefficients; constants of a recurrence; impacts of an iteration; constants of rho.
 KIND, COUNT, WAVES, ROWS, ROOM, CONSTANTS, IMPACTS, RHO = range(8)
-"""Entries of `sizes`: the kind of work; states, impacts or times; waves; rows of the tables and of the work of a
-flight; room for Taylor coefficients; constants of a recurrence; impacts of an iteration; constants of rho."""
+# Where the period and the scalars of a model begin; the thirteen rules come first.
 TURN, SCALARS = 13, 18
-"""Where the period and the scalars of a model begin; the thirteen rules come first."""
+# Entries of 1/k! in a table.
 TERMS = 24
-"""Entries of 1/k! in a table."""
 
 
 def block(flat: Any, at: int, shape: Any) -> Any:
@@ -99,19 +100,28 @@ def laws_of(w: Any, at: int, sizes: Any, model: Any) -> Any:
     return block(w, at, (length,)), block(w, at + (length if model.rules.gap < inf else 0), (length,))
 
 
-def batch_model(flat: Any, scratch: Any, sizes: Any, work: Any, launched: float) -> Any:
-    """`state.Batch` behind the model and the scratch of one flight."""
-    waves, rows = sizes[WAVES], sizes[ROWS]
-    n = 3 + 2 * waves
-    at = SCALARS + 10 + 8 * waves + table_length(waves, rows) + 4 * LEVEL * n * n
-    table = table_of(flat, at, flat[SCALARS + 9], waves, rows)
-    at += table_length(waves, rows)
-    series, turn = block(flat, at, (BATCH_ORDER + 1, n)), block(flat, at + (BATCH_ORDER + 1) * n, (3,))
+def batch_model(flat: Any, scratch: Any, sizes: Any, work: Any, launched: float, between: bool) -> Any:
+    """`state.Batch` behind the model and the scratch of one flight; between : whether there is another wall."""
+    waves = sizes[WAVES]
+    table, series, at = tables_of_batch(flat, sizes)
+    other = beyond(flat, linear_length(sizes) if between else 0)
+    other_table, other_series, _ = tables_of_batch(other, sizes)
+    mirror, turn = Mirror(other_table, other_series, other[SCALARS + 2]), block(flat, at, (3,))
     free, shape = flight_length(sizes), (2 * waves, LANES)
     lane, wave = block(scratch, free, (LANE_ROWS * LANES,)), block(scratch, free + LANE_ROWS * LANES, shape)
     free += (LANE_ROWS + 2 * waves) * LANES
     local, X = block(scratch, free, shape), block(scratch, free + 2 * waves * LANES, (BATCH_ORDER + 1, LANES))
-    return Batch(table, series, turn, lane, wave, local, X, work, launched)
+    return Batch(table, series, turn, lane, wave, local, X, work, launched, mirror)
+
+
+def tables_of_batch(flat: Any, sizes: Any) -> Any:
+    """The table and the series of a batch, and where they end."""
+    waves, rows = sizes[WAVES], sizes[ROWS]
+    n = 3 + 2 * waves
+    at = SCALARS + 10 + 8 * waves + table_length(waves, rows) + 4 * LEVEL * n * n
+    behind = at + table_length(waves, rows)
+    end = behind + (BATCH_ORDER + 1) * n
+    return table_of(flat, at, flat[SCALARS + 9], waves, rows), block(flat, behind, (BATCH_ORDER + 1, n)), end
 
 
 def linear_length(sizes: Any) -> Any:

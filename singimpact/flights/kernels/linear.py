@@ -15,10 +15,10 @@ from typing import Any
 from singimpact.flights.kernels.double_double import product_twice
 from singimpact.flights.kernels.state import COSINE, RATE, SINE
 
+# The share of a proved quiet time that is used: the rest is far above what a few operations round.
 SHY = 1 - 2.0**-20
-"""The share of a proved quiet time that is used: the rest is far above what a few operations round."""
+# The fastest rate times t up to which motions are power series, and their terms: what follows is below 1/19!.
 SOON, SOON_TERMS = 1.0, 17
-"""The fastest rate times t up to which motions are power series, and their terms: what follows is below 1/19!."""
 
 
 def coefficients(launch: Any, time: Any, z: Any, u: Any, shift: Any, n: int, p: Any, work: Any) -> None:

@@ -14,8 +14,8 @@ from singimpact.flights.kernels.double_double import divided, product_twice, sum
 from singimpact.flights.kernels.state import COSINE, PHASE, RATE, SINE
 from singimpact.flights.kernels.waves import phase_of, wave_twice
 
+# Powers of a step, and of LEVEL steps, that `fine` holds.
 LEVEL = 15
-"""Powers of a step, and of LEVEL steps, that `fine` holds."""
 
 
 def fill_fine(p: Any, rest: Any, step: float, fine: Any, space: Any) -> None:

@@ -11,16 +11,16 @@ import numpy as np
 
 Array = np.ndarray[Any, Any]
 
+# Columns of `Table.rows`: x - c and x' by their values at the start and by the constant force; sizes for rounding.
 X_BY_X, X_BY_V, X_STEADY, V_BY_X, V_BY_V, V_STEADY, SIZE_X, SIZE_STEADY = range(8)
-"""Columns of `Table.rows`: x - c and x' by their values at the start and by the constant force; sizes for rounding."""
 
+# Columns of `Table.waves`: x - c, x' and x'' (without the terms of x and x') by cosine and sine of a wave at the
+# launch; cosine and sine of the angle that the wave turns.
 X_COS, X_SIN, V_COS, V_SIN, A_COS, A_SIN, TURN_COS, TURN_SIN = range(8)
-"""Columns of `Table.waves`: x - c, x' and x'' (without the terms of x and x') by cosine and sine of a wave at the
-launch; cosine and sine of the angle that the wave turns."""
 
 
+# Columns of `Linear.waves`.
 RATE, PHASE, COSINE, SINE = range(4)
-"""Columns of `Linear.waves`."""
 
 
 class Linear(NamedTuple):
@@ -137,33 +137,34 @@ class Interval(NamedTuple):
     room: Any
 
 
+# Columns of a hit. Where a flight ends in no hit, CONDITION and VELOCITY_CONDITION are depth and bound.
 FLIGHT_TIME, VELOCITY, CONDITION, VELOCITY_CONDITION, TIME_ERROR, VELOCITY_ERROR = range(6)
 TIME_BY_TAU, TIME_BY_V, VELOCITY_BY_TAU, VELOCITY_BY_V = range(6, 10)
-"""Columns of a hit. Where a flight ends in no hit, CONDITION and VELOCITY_CONDITION are depth and bound."""
 
+# Added to the code of a flight that ends at the other wall; its velocity, and the derivatives of it, are those of the
+# model with x -> -x, whose lower wall that is.
 ACROSS = 70
-"""Added to the code of a flight that ends at the other wall; its velocity, and the derivatives of it, are those of the
-model with x -> -x, whose lower wall that is."""
 
-LANES, LANE_ROWS = 64, 20
-"""States of a batch, and rows of the array that holds them: row ROW of state k is lane[ROW + k]."""
+# States of a batch, and rows of the array that holds them: row ROW of state k is lane[ROW + k].
+LANES, LANE_ROWS = 64, 21
+# v, the launch time in two parts, a_c and the size of its terms there; of an orbit the time since the start, what its
+# sum has lost, whole periods less.
 V, AT, LATE, ACC, SIZE, SINCE, LOST, TURNS = range(0, 8 * LANES, LANES)
-"""v, the launch time in two parts, a_c and the size of its terms there; of an orbit the time since the start, what its
-sum has lost, whole periods less."""
+# x - c at the launch of a flight that is no part of an orbit.
 HEIGHT = SINCE
-"""x - c at the launch of a flight that is no part of an orbit."""
+# What becomes of the flight (0 flies, 1 a plain crossing, 2 left to `tabulated_flight`, 3 over, 4 a plain crossing of
+# the other wall, 5 stopped by an impact); its step; time and velocity of the hit.
 MODE, PLACE, TIME, SPEED = range(8 * LANES, 12 * LANES, LANES)
-"""What becomes of the flight (0 flies, 1 a plain crossing, 2 left to `tabulated_flight`, 3 over, 4 a plain crossing of
-the other wall); its step; time and velocity of the hit."""
+# x - c, x' and x'' at both ends of the step, and the bound that x - c must exceed.
 Z0, U0, E0, Z1, U1, E1, BOUND = range(12 * LANES, 19 * LANES, LANES)
-"""x - c, x' and x'' at both ends of the step, and the bound that x - c must exceed."""
+# 1, or -1 of a hit of the other wall, whose numbers are those of the model with x -> -x.
 SIDE = 19 * LANES
-"""1, or -1 of a hit of the other wall, whose numbers are those of the model with x -> -x."""
+# Where the flight starts: 1 at the wall of the model, -1 at the other one, as a flight of the model with x -> -x.
+WALL = 20 * LANES
+# At the hit, where the step is done with: the derivatives of x and x' by v and by tau; x''; growth of the free motion.
 FREE, SLOPE, BY_TAU, BY_TAU_DOT, THERE, GROWTH = range(12 * LANES, 18 * LANES, LANES)
-"""At the hit, where the step is done with: the derivatives of x and x' by v and by tau; x''; growth of the free
-motion."""
+# Degree of a Taylor step of a batch: a step is one radian of the fastest motion.
 BATCH_ORDER = 18
-"""Degree of a Taylor step of a batch: a step is one radian of the fastest motion."""
 
 
 class Flying(NamedTuple):
@@ -182,6 +183,17 @@ class Search(NamedTuple):
     rho: Any
 
 
+class Mirror(NamedTuple):
+    """A linear model with x -> -x: only the constant force differs, and the sign of all waves.
+
+    table, series : as of `Batch`. steady : the constant force.
+    """
+
+    table: Table
+    series: Any
+    steady: Any
+
+
 class Batch(NamedTuple):
     """A linear model as `batch` flies it, and scratch of a batch.
 
@@ -190,7 +202,8 @@ class Batch(NamedTuple):
     inverse. lane : see `LANES`. wave, local : cosines of all waves, then their sines, at the launches and at the steps
     of the hits; were they side by side, rows that a loop writes would seem to overlap, and it would stay scalar. X :
     Taylor coefficients; then the columns of the hits. work : scratch of one flight. launched : the step on which t = 0
-    is a root, 0; -1 where all start off the wall.
+    is a root, 0; -1 where all start off the wall. mirror : what flights from the other wall have for `table` and
+    `series`; without one it is the same.
     """
 
     table: Table
@@ -202,3 +215,4 @@ class Batch(NamedTuple):
     X: Any
     work: Flying
     launched: Any
+    mirror: Mirror

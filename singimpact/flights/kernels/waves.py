@@ -12,8 +12,8 @@ from typing import Any
 from singimpact.flights.kernels.double_double import divided, product_twice, sum_twice
 from singimpact.flights.kernels.state import COSINE, PHASE, RATE, SINE
 
+# Adding 3 2^51 and taking it away rounds a double to the nearest integer.
 NEAREST = 6755399441055744.0
-"""Adding 3 2^51 and taking it away rounds a double to the nearest integer."""
 
 
 def reduced_twice(tau: float, turn: Any) -> Any:

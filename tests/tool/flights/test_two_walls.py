@@ -242,6 +242,31 @@ def test_orbits_and_iterates_are_those_of_the_impact_map(name):
         assert np.allclose(at_walls, np.where(orbit.wall[1:] == 1, high, low), atol=1e-9)
 
 
+@pytest.mark.parametrize("law", ["0.7", "-0.6*v - v/(10 + v**2)", "1"])
+@pytest.mark.parametrize("name", ["linear", "undamped", "resonant", "free", "unstable"])
+def test_many_iterates_abreast_are_those_of_the_impact_map(name, law):
+    """Impact by impact: the map flies each wall's states through that wall's own model."""
+    compared = 0
+    for seed, gap in enumerate((None, 1e-7, 0.3, 1e3)):
+        osc = model(name, seed, upper_restitution=law)
+        if gap is not None:
+            osc = osc.replace(clearance="-0.2", upper=gap - 0.2)
+        tau, v = states(200, seed)
+        before = None
+        for n in range(1, 7):
+            ends = osc.iterate(tau, v, n)
+            step = osc.impact_map(tau, v) if before is None else osc.impact_map(before.tau, before.v, wall=before.wall)
+            flew = np.ones(200, bool) if before is None else before.status == Status.hit
+            assert (flew | (ends.status == (ends if before is None else before).status)).all()
+            hit = flew & (step.status == Status.hit) & (step.condition < 1e6)
+            assert (ends.status[hit] == Status.hit).all()
+            assert (ends.wall[hit] == step.wall[hit]).all()
+            assert np.allclose(ends.tau[hit], step.tau[hit], rtol=1e-9, atol=1e-11)
+            assert np.allclose(ends.v[hit], step.v[hit], rtol=1e-8)
+            before, compared = ends, compared + int(hit.sum())
+    assert compared > 1200
+
+
 def test_chatter_ends_and_lifts_off_at_either_wall():
     low = si.ImpactOscillator("x + x**3/3", "8*cos(2*t)", "-0.3", "0.3", upper="0.4")
     seen = set()
