@@ -3,7 +3,6 @@
 import difflib
 import math
 import os
-import warnings
 from collections.abc import Callable, Iterable, Sequence
 from functools import wraps
 from numbers import Integral
@@ -235,15 +234,13 @@ def checked_keywords(function: Callable[P, T]) -> Callable[P, T]:
             try:
                 return mark(function, values[0], wall, values[1:], dict(rest))  # type: ignore[no-any-return]
             except (TypeError, KeyError):
-                _in_new_names(function, values, rest)
+                _refuse_arguments(function, values, rest)
                 raise
         try:
             return function(*values, **named)
         except TypeError:
-            renamed = _in_new_names(function, values, named)
-            if renamed is None:
-                raise
-        return function(*values, **renamed)
+            _refuse_arguments(function, values, named)
+            raise
 
     if callable(mark):
         from inspect import Parameter, signature
@@ -267,26 +264,18 @@ def checked_methods(kind: type[T], two_walls: bool = False) -> type[T]:
     return kind
 
 
-RENAMED = {"model": "osc", "steps": "points"}
-"""Old names of arguments, which work until version 1.1, and the new ones."""
-
-
-def _in_new_names(function: Callable[..., Any], values: Sequence[Any], named: dict[str, Any]) -> dict[str, Any] | None:
-    """The arguments under their new names, with a warning; None where there is no old one.
+def _refuse_arguments(function: Callable[..., Any], values: Sequence[Any], named: dict[str, Any]) -> None:
+    """Nothing where the function takes these arguments.
 
     Raises
     ------
-    InputError : arguments that the function does not take.
+    InputError : it does not.
     """
     from inspect import signature
 
     takes = signature(function).parameters
     names = [name for name, item in takes.items() if name != "self" and item.kind is not item.VAR_KEYWORD]
     title = type(values[0]).__name__ if function.__name__ == "__init__" else function.__name__
-    old = {name: RENAMED[name] for name in named if name not in names and RENAMED.get(name) in names}
-    for name, new in old.items():
-        warnings.warn(f"{title}({name}=...) is {title}({new}=...) now", FutureWarning, stacklevel=3)
-    named = {old.get(name, name): value for name, value in named.items()}
     for name in named:
         if name not in names and len(names) + ("self" in takes) == len(takes):
             instead = meant(name, names) or ", ".join(names) or "none"
@@ -295,4 +284,3 @@ def _in_new_names(function: Callable[..., Any], values: Sequence[Any], named: di
         signature(function).bind(*values, **named)
     except TypeError as error:
         raise InputError(f"{title} takes {', '.join(names)}: {error}") from None
-    return named if old else None

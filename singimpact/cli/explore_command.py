@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -24,9 +23,7 @@ if TYPE_CHECKING:
 @click.option(
     "--between", nargs=2, metavar="LOW HIGH", help="Interval of the clearance.  [default: both sides of a swan]"
 )
-@click.option(
-    "--points", "--steps", type=click.IntRange(2, 1001), default=41, show_default=True, help="Clearances of the slider."
-)
+@click.option("--points", type=click.IntRange(2, 1001), default=41, show_default=True, help="Clearances of the slider.")
 @click.option("--html", metavar="FILE", help="Write the page to this file.  [default: open it in a browser]")
 @click.option("--json", "as_json", is_flag=True, help="Give the curves as JSON instead of a page.")
 @click.option("-o", "--output", metavar="FILE", help="The same as --html; with --json, the JSON file.")
@@ -45,8 +42,6 @@ def command(
     that needs no network and no other program. It has sliders for r and the parameters too; a click in the plane of
     launch phase and velocity starts an orbit, which the browser computes.
     """
-    if "--steps" in sys.argv:
-        click.echo("singimpact: --steps is --points now", err=True)
     file = _place(html, output)
     oscillator = take_model(options, path)
     if as_json:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -300,9 +299,6 @@ def plot(
     >>> axes.get_xlabel(), axes.lines[0].get_color()
     ('time $t$', 'black')
     """
-    if "axes" in style:
-        warnings.warn("plot(axes=...) is plot(ax=...) now", FutureWarning, stacklevel=3)
-        ax = style.pop("axes")
     before = [] if ax is None else _children(ax)
     axes = _sheet(thing) if sheet else _drawn(thing, ax, height)
     if style:

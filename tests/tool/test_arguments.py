@@ -89,52 +89,32 @@ def test_a_list_of_orbits_says_why_there_is_none():
     assert all(note in str(refusal.value) for note in none.notes)
 
 
-def test_styles_go_to_lines_and_the_old_name_of_the_axes_still_works():
+def test_styles_go_to_lines():
     orbit = si.linear(2, 0, "1/2").orbit(0.1, 0.2, 3)
     axes = si.plot(orbit, color="red", linewidth=3, label="mine")
     assert {line.get_color() for line in axes.lines} == {"red"}
     assert [line.get_label() for line in axes.lines].count("mine") == 1
     before = len(axes.lines)
-    with pytest.warns(FutureWarning, match=r"plot\(ax=...\)"):
-        again = si.plot(orbit, axes=axes, color="blue")
+    again = si.plot(orbit, ax=axes, color="blue")
     assert again is axes
     assert [line.get_color() for line in axes.lines[:before]] == ["red"] * before
     assert {line.get_color() for line in axes.lines[before:]} == {"blue"}
+    with pytest.raises(InputError, match="axes"):
+        si.plot(orbit, axes=axes)
 
 
 def test_a_figure_has_the_name_of_its_number():
     assert si.figure("12").axes
 
 
-@pytest.mark.parametrize(
-    ("call", "told"),
-    [
-        (lambda osc: si.explore(osc, steps=2), r"explore\(steps=...\) is explore\(points=...\) now"),
-        (lambda osc: osc.explore(steps=2), r"explore\(steps=...\) is explore\(points=...\) now"),
-        (lambda osc: si.ImpactSurface(model=osc, tau=(-1, 1), t=(0, 1)), r"ImpactSurface\(osc=...\) now"),
-        (
-            lambda osc: si.Scene(model=osc, layers=("gamma",), v=(0, 1)).model,
-            r"Scene\(model=...\) is Scene\(osc=...\) now",
-        ),
-    ],
-)
-def test_an_old_name_of_an_argument_works_with_a_warning(call, told):
-    with pytest.warns(FutureWarning, match=told) as warned:
-        assert call(si.linear(2, "0.9", "0.5")) is not None
-    assert warned[0].filename == __file__
-
-
-def test_old_names_are_no_longer_those_of_any_argument():
-    from inspect import signature
-
-    from singimpact.inputs import RENAMED
-
-    studies = [si.explore, si.basins, si.bifurcation, si.classify, si.ImpactSurface, si.branch, si.animate, si.manifold]
-    names = {name for study in studies for name in signature(study).parameters}
-    assert not names & set(RENAMED)
-    assert RENAMED == {} or tuple(map(int, si.__version__.split(".")[:2])) < (1, 1)  # until when they are promised
+def test_names_before_1_0_are_refused_with_those_there_are():
+    osc = si.linear(2, "0.9", "0.5")
+    with pytest.raises(InputError, match="explore has no argument 'steps': give osc, between, points"):
+        si.explore(osc, steps=2)
+    with pytest.raises(InputError, match="Scene has no argument 'model': give "):
+        si.Scene(model=osc, layers=("gamma",), v=(0, 1))
     with pytest.raises(InputError, match="explore has no argument 'stepps': give osc, between, points"):
-        si.explore(si.linear(2, "0.9", "0.5"), stepps=2)
+        si.explore(osc, stepps=2)
 
 
 @pytest.mark.parametrize(
