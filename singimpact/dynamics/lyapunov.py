@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.numbers import Array, compare
+from singimpact.algebra.numbers import EPSILON, Array, compare
 from singimpact.dynamics.attractors import apart
 from singimpact.dynamics.chatter import ENDING, chatter_limit
 from singimpact.dynamics.lift_off import periods_between, release
@@ -53,6 +53,10 @@ class LyapunovSettings:
     # how often the impacts are flown anew when their halves differ by more than so many standard errors
     again: int = 3
     apart: float = 4.0
+    # rests after which an orbit is said to rest again and again, where the forcing never repeats
+    rests: int = 8
+    # roundings of the growth in an impact
+    rounded: float = 4.0
 
 
 SETTINGS = LyapunovSettings()
@@ -67,12 +71,14 @@ class Lyapunov(Result):
     ----------
     exponents : per unit of time, the larger first, shape (2,); -inf where the orbit comes to rest again and again, for
         what follows a rest does not depend on what was before; nan where no impact was flown.
-    error : standard errors of `exponents`, from the spread of groups of impacts; nan with fewer than two groups.
+    error : standard errors of `exponents`, from the spread of groups of impacts, and their rounding; nan with fewer
+        than two groups.
     impacts, time : how many impacts the exponents are taken over, and how long they last.
     start, last : the states (tau, v) before and after these impacts.
     status : `hit` where all impacts were flown, `sticks` of an orbit that comes to rest, else the status of the flight
         that ended the orbit. The exponents are those of the impacts before it.
-    superstable : whether the orbit lifts off twice at one phase of the forcing, or rests for ever.
+    superstable : whether the orbit lifts off twice at one phase of the forcing (eight times, where the forcing never
+        repeats), or rests for ever.
     transient : impacts flown before. converged : whether the larger exponents of both halves of the impacts agree
         within their errors; where they do not, the orbit has not settled: give more impacts or a longer transient.
     """
@@ -341,6 +347,7 @@ class _Run:
         # what follows a lift-off is fixed: one at a phase of an earlier one comes again and again
         earlier = [phase for phase, wall in self.lifted if wall == self.wall]
         known = any(periods_between(self.osc, phase, lifted) is not None for phase in earlier)
+        known |= self.osc.period is None and len(self.lifted) + 1 == SETTINGS.rests
         if known or not np.isfinite(lifted):
             self.status = Status.unresolved if np.isnan(lifted) else Status.sticks
         self.lifted.append((lifted, self.wall))
@@ -407,6 +414,7 @@ def _exponents(rows: Array, time: float) -> tuple[Array, Array]:
         with np.errstate(invalid="ignore"):  # where impacts leave no velocity all of a column is -inf
             off = growth - np.outer(parts[:, 1], exponents)
         error = np.sqrt((off**2).sum(axis=0) * groups / (groups - 1)) / time
+        error += SETTINGS.rounded * EPSILON * rows[:, 0].sum() / time
         error[np.isneginf(exponents)] = 0.0
     order = np.argsort(-exponents, kind="stable")
     return exponents[order], error[order]

@@ -169,7 +169,8 @@ class _Run:
         free = np.flatnonzero(_open_flights(ends.status))
         late = free[self._free(rows, free, x[free] - as_float(model.clearance), xdot[free])]
         self.v[late] = signed(launch(model, x[late], xdot[late], 0.0))
-        self._decide(~(np.abs(self.v) > 0), rows)
+        landed = model.plastic & (ends.status == Status.hit)
+        self._decide(~((np.abs(self.v) > 0) | landed), rows)
 
     def _free(self, rows: Array, free: Array, height: Array, xdot: Array) -> Array:
         """Put in the rows of motions that met no wall for long; whether these meet it all the same."""
@@ -247,8 +248,8 @@ class _Run:
             step = at_walls(impact_map, study.model, walls, (0 * ends.v[late], np.abs(ends.v[late])))
             self.v[at[late]] = signed(step)
             over[late] = ~(np.abs(self.v[at[late]]) > 0)
-            # off a wall that pushes, flights of so slow a launch are grazes to rounding
-            over |= ~rests & (np.abs(ends.v) <= SETTINGS.rest * study.fast)
+            # off a wall that pushes, flights of so slow a launch are grazes to rounding; a mass at rest leaves as one
+            over |= ~rests & (np.abs(ends.v) <= SETTINGS.rest * study.fast) & ~((ends.v == 0) & study.model.plastic)
         rows[rests, 0] = CHATTER
         resting = np.flatnonzero(rests)
         ended_at = at_rest(study, self.tau[at[resting]], self.v[at[resting]])

@@ -70,7 +70,7 @@ class Responses:
             resting = chattering(self.study, ends.tau, ends.v) | np.isin(ends.status, (Status.complete, Status.sticks))
             for index in left[resting].tolist():
                 self._lift(index)
-            over = ~resting & ((ends.status != 0) | ~(np.abs(ends.v) > 0))
+            over = ~resting & ((ends.status != 0) | ~self._leaves(ends.v))
             self.rows[left[over]] = ended(ends.status[over])
             left = self._going(left, until)
 
@@ -97,8 +97,12 @@ class Responses:
             earlier = [after]
         tau, v = earlier[0]
         self.tau[index], self.v[index] = tau, v
-        if not abs(v) > 0:
-            self.rows[index] = (CHATTER, -1.0, 0.0) if v == 0 else (STUCK, 0.0, 0.0)
+        if not self._leaves(v) or np.isnan(tau):
+            self.rows[index] = (CHATTER, -1.0, 0.0) if v == 0 and np.isnan(tau) else (STUCK, 0.0, 0.0)
+
+    def _leaves(self, v: Array | float) -> Array:
+        """Whether an orbit goes on after an impact; with restitution 0 none leaves a velocity."""
+        return np.asarray(np.isfinite(v) if self.study.model.plastic else np.abs(v) > 0)
 
     def _joined(self, leader: Array) -> Array:
         """The leaders of orbits, those that have met become one."""

@@ -34,7 +34,7 @@ class HorizonSettings:
     returns: float = 4.0
     # samples of one period of the forcing for its mean
     samples: int = 256
-    # a mean force below this part of the largest force is taken as zero
+    # a mean force, or a pull back, below this part of the largest force is taken as zero
     least_mean: float = 1e-12
 
 
@@ -140,8 +140,10 @@ def _of_nonlinear(osc: Oscillator) -> tuple[list[float], float]:
         above = clearance + np.concatenate([[0.0], amplitudes])
         force = _mean_force(osc, above, phases)
         average = 0.0 if osc.period is None else float(forcing.mean())
-        secant = (force[1:] - average) / amplitudes
-        half_turns = np.pi / np.sqrt(secant[secant > 0])
+        pull = force[1:] - average
+        # a difference of rounding errors is no weak spring: it would make a horizon of 1e8
+        back = pull > SETTINGS.least_mean * (np.abs(force).max() + abs(average))
+        half_turns = np.pi / np.sqrt(pull[back] / amplitudes[back])
     times = (SETTINGS.nonlinear_half_turns * half_turns[np.isfinite(half_turns)]).tolist()
     if osc.period is None or not np.isfinite(forcing).all() or not np.isfinite(force[0]):
         return times, 0.0

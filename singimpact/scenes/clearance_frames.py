@@ -252,9 +252,9 @@ def _through(swan: SwanPoint, between: tuple[Fraction, Fraction] | None, steps: 
 
 
 def _stiffness(swan: SwanPoint) -> float:
-    """f_x at (c_0, 0)."""
+    """f_x at (c_0, 0) and the time of the swan."""
     rest = substitute(swan.model.force(), {"xdot": number(0)})
-    return float(evaluate(derivative(rest, "x"), {"x": swan.clearance}, DOUBLES))
+    return float(evaluate(derivative(rest, "x"), {"x": swan.clearance, "t": swan.tau}, DOUBLES))
 
 
 def _frame(surface: ImpactSurface, clearance: float, view: View) -> ClearanceFrame:

@@ -231,3 +231,31 @@ def test_exponents_are_the_growth_of_the_map_and_minus_infinity():
     resting = table("3.2").lyapunov(0.1, 1, 400)
     assert resting.superstable
     assert resting.exponents.tolist() == [-np.inf, -np.inf]
+
+
+def test_a_clock_with_plastic_impacts_has_the_cycle_of_its_orbits():
+    """Every impact leaves the same state: the cycle of one impact is the flight from rest."""
+    clock = si.ImpactOscillator("-(1 - x**2)*xdot + x", "0", -1, 0)
+    (cycle,) = si.basins(clock, size=4).attractors
+    flight = solve_ivp(
+        lambda _, s: [s[1], (1 - s[0] ** 2) * s[1] - s[0]], (0, 10), [-1, 0], rtol=1e-12, atol=1e-13, dense_output=True
+    )
+    period = brentq(lambda t: flight.sol(t)[0] + 1, 3, 7)
+    assert (cycle.kind, cycle.n) == ("orbit", 1)
+    assert abs(cycle.period - period) < 1e-9
+    found = clock.lyapunov(0, 1, 500)
+    assert abs(found.exponents[0]) <= found.error[0] < 1e-14
+    assert found.exponents[1] == -np.inf
+    (still,) = si.basins(clock.replace(clearance="0.1"), size=4).attractors
+    assert still.kind == "rest"
+
+
+@pytest.mark.parametrize("clearance", ["0.1", "-0.3", "0.6"])
+@pytest.mark.parametrize("restitution", [0, "0.3"])
+def test_rests_under_a_forcing_that_never_repeats_are_no_rest_for_ever(clearance, restitution):
+    osc = si.ImpactOscillator("x + 0.1*xdot", "cos(2*t) + cos(sqrt(2)*t)/2", clearance, restitution)
+    orbit = osc.orbit(0.1, 0.5, 300)
+    rests = int(np.count_nonzero(orbit.kind == "release"))
+    (response,) = si.basins(osc, size=4).attractors
+    assert response.kind == ("chatter" if rests else "quasi-periodic")
+    assert osc.lyapunov(0.1, 0.5, 200).superstable == (rests > 0)

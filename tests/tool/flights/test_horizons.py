@@ -114,3 +114,14 @@ def test_a_slow_forcing_lifts_the_mass_for_a_third_of_its_period():
     step = osc.impact_map(osc.release(start - 1.0), 0)
     assert step.status == Status.hit
     assert step.flight_time == pytest.approx(2 * np.arccos(0.1) * 1e6, rel=1e-3)
+
+
+@pytest.mark.parametrize("force", ["(1 + cos(2*t)/5)*x + 0.1*xdot", "x + 0.1*xdot + 0.001*x**3"])
+def test_a_force_that_vanishes_at_a_sample_is_no_weak_spring(force):
+    """f = 0 at x = 0, 0.3 above the wall, up to rounding: the horizon was 2.5e6, which no Taylor steps reach."""
+    osc = si.ImpactOscillator(force, "cos(2*t)/3", "-0.3", "0.7")
+    hit = osc.replace(clearance="-0.6").first_hit(9.0, 0.008)  # it swings by 0.4
+    assert hit.status in (Status.no_return, Status.escaped, Status.hit)
+    ends = osc.launch(np.zeros(9), np.linspace(-1, 1, 9), 0.0)
+    assert np.isin(ends.status, (Status.no_return, Status.escaped, Status.hit)).all()
+    assert "unresolved" not in {found.kind for found in osc.basins(size=4).attractors}

@@ -162,3 +162,10 @@ def test_windows_follow_the_swan(film):
         assert 0.4 < share < 1
         assert np.abs(frame.curves["P"][0].points[:, 1]).max() < frame.view.v[1]
     assert np.ptp(film.frames[1].view.v) < np.ptp(film.frames[0].view.v) * 0.7
+
+
+def test_a_swan_of_a_force_with_t_opens_the_slider():
+    """a_c = cos 2t - (1 + cos(2t)/5) c: the swan at pi/2 is where 1 + 4c/5 = 0."""
+    film = clearance_film(si.ImpactOscillator("(1 + cos(2*t)/5)*x + 0.1*xdot", "cos(2*t)", "-0.3", "0.7"), steps=3)
+    assert abs(film.swan.clearance + 1.25) < 1e-12
+    assert [len(frame.tangencies) for frame in film.frames] == [1, 2, 2]
