@@ -42,6 +42,33 @@ def test_basins_that_were_interrupted_go_on(wall, monkeypatch, tmp_path):
             assert [run.tau.tolist() for run in found.attractors] == [run.tau.tolist() for run in whole.attractors]
 
 
+KINDS = {
+    "t in f": si.ImpactOscillator("(1 + 0.3*cos(2*t))*x + 0.1*xdot + 0.2*x**3", "cos(t)", "0.2", "0.8"),
+    "no clock": si.ImpactOscillator("x - (1 - x**2)*xdot", "0", "-1.5", "0.8"),
+    "no period": si.ImpactOscillator("x + 0.1*xdot", "cos(2*t) + cos(sqrt(2)*t)/2", "0.1", "0.7"),
+    "restitution 0": si.linear("2.8", "0.1", 0),
+}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_basins_of_every_kind_of_model_go_on(kind, monkeypatch, tmp_path):
+    study = partial(si.basins, KINDS[kind], size=12, impacts=500)
+    whole, path = study(), "synchrony:Responses" if kind == "no period" else "settling:_Run"
+    with ThreadPoolExecutor(1) as pool:
+        interrupted(monkeypatch, f"singimpact.dynamics.{path}", "settle", 1 if kind.startswith("no") else 2)
+        with pytest.raises(KeyboardInterrupt):
+            study(executor=pool, output=tmp_path / "kept.npz")
+        monkeypatch.undo()
+        found = study(executor=pool, output=tmp_path / "kept.npz")
+    assert np.array_equal(found.codes, whole.codes)
+    assert [run.name for run in found.attractors] == [run.name for run in whole.attractors]
+    over = partial(si.bifurcation, KINDS[kind], "clearance", (0.1, 0.15), 4, impacts=60, kept=20, settle=500)
+    one = over()
+    over(output=tmp_path / "over.npz")
+    again = over(output=tmp_path / "over.npz")
+    assert np.array_equal(one.events, again.events, equal_nan=True)
+
+
 def test_states_of_another_wall_are_not_taken_up(tmp_path):
     si.basins(PAIR, size=4, output=tmp_path / "kept.npz")
     with pytest.raises(si.InputError, match="other cases"):
