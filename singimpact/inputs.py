@@ -3,14 +3,15 @@
 import difflib
 import math
 import os
-from collections.abc import Callable, Iterable, Sequence
-from functools import wraps
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial, wraps
 from numbers import Integral
 from types import FunctionType
-from typing import Any, ParamSpec, TypeVar
+from typing import Any, ParamSpec, Protocol, TypedDict, TypeVar, Unpack
 
 P = ParamSpec("P")
 T = TypeVar("T")
+R = TypeVar("R", covariant=True)
 
 LONGEST = 1500  # characters of a refusal
 
@@ -166,17 +167,34 @@ def require_known(kind: str, names: Iterable[str], accepted: Iterable[str]) -> N
             raise unknown(kind, name, known)
 
 
+# the attribute of a function that takes a model with two walls
 TWO_WALLS = "two_walls"
-"""The attribute of a function that takes a model with two walls."""
 
 
-def takes_two_walls(function: T) -> T:
+def takes_two_walls(function: T, how: object = True) -> T:
     """The function, marked as one that takes a model with two walls; others refuse it, see `checked_keywords`."""
-    setattr(function, TWO_WALLS, True)
+    setattr(function, TWO_WALLS, how)
     return function
 
 
-def with_walls(shared_out: Callable[..., Any]) -> Callable[[T], T]:
+class FlightOptions(TypedDict, total=False):
+    """Options of flights from either wall."""
+
+    digits: int | None
+    tolerance: object
+    horizon: object
+    steps: int | None
+    out: Mapping[str, Any] | None
+    wall: object
+
+
+class FromWalls(Protocol[R]):
+    """A method `with_walls`, as type checkers see it."""
+
+    def __call__(self, tau: Any, v: Any, **options: Unpack[FlightOptions]) -> R: ...
+
+
+def with_walls(shared_out: Callable[..., Any]) -> Callable[[Callable[..., R]], FromWalls[R]]:
     """A mark as `takes_two_walls`, of a method of states at the lower wall that takes `wall=` besides.
 
     Parameters
@@ -184,11 +202,7 @@ def with_walls(shared_out: Callable[..., Any]) -> Callable[[T], T]:
     shared_out : calls the method for states at given walls: of the method, its model, wall, and other arguments.
     """
 
-    def mark(function: T) -> T:
-        setattr(function, TWO_WALLS, shared_out)
-        return function
-
-    return mark
+    return partial(takes_two_walls, how=shared_out)
 
 
 def _may_have_walls(value: object) -> bool:

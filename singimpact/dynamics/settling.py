@@ -169,8 +169,7 @@ class _Run:
         free = np.flatnonzero(_open_flights(ends.status))
         late = free[self._free(rows, free, x[free] - as_float(model.clearance), xdot[free])]
         self.v[late] = signed(launch(model, x[late], xdot[late], 0.0))
-        landed = model.plastic & (ends.status == Status.hit)
-        self._decide(~((np.abs(self.v) > 0) | landed), rows)
+        self._decide(~((np.abs(self.v) > 0) | (model.plastic & (ends.status == Status.hit))), rows)
 
     def _free(self, rows: Array, free: Array, height: Array, xdot: Array) -> Array:
         """Put in the rows of motions that met no wall for long; whether these meet it all the same."""

@@ -41,6 +41,8 @@ print(si.shaken_wall("0", "-9.81", "sin(7*t)/5", "1/2").back(0.1).xdot)
 print(si.bifurcation(osc, "damping", (0.2, 0.3), 2, direction="both").direction)
 moved: si.ImpactOscillator = osc.replace(clearance="0.4")
 print(moved.release(1.2) + 1.0, moved.impact_map(1.2, 0.1).v, si.theory.grazing_map(2, model=osc, at=0).xdot[1])
+pair = osc.replace(upper="0.9")
+print(pair.first_hit(1.2, 0.1, wall="upper", digits=20).wall, pair.impact_map(1.2, [0.1], wall=["u"]).v)
 print(osc.periodic(1, 1)[0].multipliers, osc.flight(1.2, 0.1, 0.05).x, osc.inverse_map(1.2, 0.1).tau)
 """
 
@@ -72,7 +74,9 @@ def test_a_users_script_is_typed(tmp_path, clone):
 
 @pytest.mark.slow
 def test_a_wrong_script_is_told(tmp_path, clone):
-    done = checked(SCRIPT + 'osc.orbit("1.2", "0.3", impacts="60")\nsi.universal(1)\n', tmp_path, clone)
+    wrong = 'osc.orbit("1.2", "0.3", impacts="60")\nsi.universal(1)\nosc.first_hit(1, 1, digts=3)\n'
+    done = checked(SCRIPT + wrong, tmp_path, clone)
+    assert 'Unexpected keyword argument "digts"' in done.stdout
     assert 'incompatible type "str"' in done.stdout
     assert 'Missing positional argument "restitution"' in done.stdout
 
