@@ -346,9 +346,9 @@ class _Run:
         lifted = release(self.here, at)
         # what follows a lift-off is fixed: one at a phase of an earlier one comes again and again
         earlier = [phase for phase, wall in self.lifted if wall == self.wall]
-        known = any(periods_between(self.osc, phase, lifted) is not None for phase in earlier)
-        known |= self.osc.period is None and len(self.lifted) + 1 == SETTINGS.rests
-        if known or not np.isfinite(lifted):
+        again = any(periods_between(self.osc, phase, lifted) is not None for phase in earlier)
+        again |= self.osc.period is None and len(self.lifted) + 1 == SETTINGS.rests
+        if again or not np.isfinite(lifted):
             self.status = Status.unresolved if np.isnan(lifted) else Status.sticks
         self.lifted.append((lifted, self.wall))
         self.tau, self.v = (lifted if np.isfinite(lifted) else at), 0.0
