@@ -185,6 +185,7 @@ class FlightOptions(TypedDict, total=False):
     horizon: object
     steps: int | None
     out: Mapping[str, Any] | None
+    threads: int | None
     wall: object
 
 

@@ -42,7 +42,7 @@ print(si.bifurcation(osc, "damping", (0.2, 0.3), 2, direction="both").direction)
 moved: si.ImpactOscillator = osc.replace(clearance="0.4")
 print(moved.release(1.2) + 1.0, moved.impact_map(1.2, 0.1).v, si.theory.grazing_map(2, model=osc, at=0).xdot[1])
 pair = osc.replace(upper="0.9")
-print(pair.first_hit(1.2, 0.1, wall="upper", digits=20).wall, pair.impact_map(1.2, [0.1], wall=["u"]).v)
+print(pair.first_hit(1.2, 0.1, wall="upper", digits=20).wall, pair.impact_map(1.2, [0.1], wall=["u"], threads=1).v)
 print(osc.periodic(1, 1)[0].multipliers, osc.flight(1.2, 0.1, 0.05).x, osc.inverse_map(1.2, 0.1).tau)
 """
 

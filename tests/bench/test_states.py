@@ -40,19 +40,11 @@ def test_a_wrong_impact_is_seen() -> None:
     assert random_states._errors(model, 1.0, 0.5, [3.0, np.inf, np.nan, 0])[2] == 1
 
 
-def test_no_state_between_walls_is_wrong() -> None:
+@pytest.mark.parametrize("family", ["between-walls", "plastic"])
+def test_no_state_of_another_family_is_wrong(family: str) -> None:
     with ThreadPoolExecutor(1) as pool:
-        rows = random_states.check(300, 7, pool, family="between-walls")
-    assert {row.kind.split()[1] for row in rows} == set(random_states.FAMILIES["between-walls"][2])
-    for row in rows:
-        assert row.wrong == row.unresolved == 0
-        assert max(row.time_error, row.velocity_error) < 1, row
-
-
-def test_no_release_from_rest_is_wrong() -> None:
-    with ThreadPoolExecutor(1) as pool:
-        rows = random_states.check(300, 7, pool, family="plastic")
-    assert {row.kind.split()[1] for row in rows} == set(random_states.FAMILIES["plastic"][2])
+        rows = random_states.check(300, 7, pool, family=family)
+    assert {row.kind.split()[1] for row in rows} == set(random_states.FAMILIES[family][2])
     for row in rows:
         assert row.wrong == row.unresolved == 0
         assert max(row.time_error, row.velocity_error) < 1, row

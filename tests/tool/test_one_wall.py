@@ -5,7 +5,7 @@ import inspect
 import pytest
 
 import singimpact as si
-from singimpact.inputs import TWO_WALLS, InputError
+from singimpact.inputs import TWO_WALLS, FlightOptions, InputError
 
 PAIR = si.linear("2.8", "-0.5", "0.8", upper=("0.5", "0.7"))
 SENTENCE = "a second at upper = '0.5': give osc.one_wall"
@@ -62,3 +62,9 @@ def test_enough_of_both_are_tried():
 def test_what_names_a_model_otherwise_refuses_it_too(call):
     with pytest.raises(InputError, match="one wall"):
         call()
+
+
+@pytest.mark.parametrize("method", [si.ImpactOscillator.first_hit, si.ImpactOscillator.impact_map])
+def test_type_checkers_see_every_option_of_a_flight(method):
+    options = [item for item in inspect.signature(method).parameters.values() if item.kind is item.KEYWORD_ONLY]
+    assert {item.name for item in options} == set(FlightOptions.__annotations__)

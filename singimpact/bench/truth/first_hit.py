@@ -28,10 +28,8 @@ def first_hit(motion: "Linear | Cubic | Above", v: float, horizon: float, quiet:
     ...     print(first_hit(Linear(2.0, 0.0, 1.0, 0.5), 0.5, 100.0)[0].str(20, radius=False))
     1.1115158754205710871
     """
-    begin, width = quiet, min(horizon, 0.25)
-    if quiet > 0:
-        width = quiet
-    elif not isinstance(motion, Above):
+    begin, width = quiet, quiet or min(horizon, 0.25)
+    if not quiet and not isinstance(motion, Above):
         begin = _without_root(v, float(motion.at(0)[2]), motion)
         width = min(begin, 0.25)
     while begin < horizon:

@@ -49,9 +49,6 @@ from singimpact.flights.kernels.state import (
 from singimpact.flights.kernels.tabulated import tabulated_flight
 from singimpact.flights.kernels.waves import NEAREST, phase_of, quarters, reduced_twice, wall_acceleration
 
-# Of the lower wall, and of the other one.
-Pair = tuple[Any, Any]
-
 
 def hit_batches(tau: Array, v: Array, heights: Array, model: Model, batch: Batch, out: Array, status: Array) -> int:
     """`entries.linear_hits` of `LANES` states or more; the last batch flies some states again."""
@@ -86,7 +83,7 @@ def hit_batches(tau: Array, v: Array, heights: Array, model: Model, batch: Batch
 
 
 def fly_batches(
-    tau: Array, v: Array, count: int, laws: Pair, models: Pair, batch: Batch, sides: Array, status: Array
+    tau: Array, v: Array, count: int, laws: Any, models: Any, batch: Batch, sides: Array, status: Array
 ) -> None:
     """Fly `count` impacts from every state, as `orbits.iterate`; tau, v are as many as a multiple of `LANES`."""
     lane, turn = batch.lane, batch.turn
@@ -106,6 +103,7 @@ def fly_batches(
                     if code != 0:
                         status[b + k], lane[MODE + k] = code, 3.0
             if models[0].rules.gap < inf:
+                # SIDE is -1 of a hit of the wall across, where the next flight starts
                 for k in range(LANES):
                     lane[WALL + k] *= lane[SIDE + k] if lane[MODE + k] != 3.0 else 1.0
                 bounce(lane, -1.0, laws[1])

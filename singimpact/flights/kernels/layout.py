@@ -14,6 +14,7 @@ from singimpact.flights.kernels.state import (
     BATCH_ORDER,
     LANE_ROWS,
     LANES,
+    Array,
     Batch,
     Columns,
     Flying,
@@ -114,7 +115,7 @@ def batch_model(flat: Any, scratch: Any, sizes: Any, work: Any, launched: float,
     return Batch(table, series, turn, lane, wave, local, X, work, launched, mirror)
 
 
-def tables_of_batch(flat: Any, sizes: Any) -> Any:
+def tables_of_batch(flat: Array, sizes: Array) -> tuple[Table, Array, int]:
     """The table and the series of a batch, and where they end."""
     waves, rows = sizes[WAVES], sizes[ROWS]
     n = 3 + 2 * waves

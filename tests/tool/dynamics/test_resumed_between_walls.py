@@ -27,21 +27,6 @@ def interrupted(monkeypatch, path, method, calls):
     monkeypatch.setattr(kind, method, counted)
 
 
-@pytest.mark.parametrize("wall", ["lower", "upper"])
-def test_basins_that_were_interrupted_go_on(wall, monkeypatch, tmp_path):
-    study = partial(si.basins, PAIR, size=40, wall=wall)
-    whole = study()
-    with ThreadPoolExecutor(1) as pool:
-        interrupted(monkeypatch, "singimpact.dynamics.settling:_Run", "settle", 2)
-        with pytest.raises(KeyboardInterrupt):
-            study(executor=pool, output=tmp_path / "kept.npz")
-        monkeypatch.undo()
-    with ThreadPoolExecutor(4) as pool:
-        for found in (study(executor=pool, output=tmp_path / "kept.npz"), study(output=tmp_path / "kept.npz")):
-            assert np.array_equal(found.codes, whole.codes)
-            assert [run.tau.tolist() for run in found.attractors] == [run.tau.tolist() for run in whole.attractors]
-
-
 KINDS = {
     "t in f": si.ImpactOscillator("(1 + 0.3*cos(2*t))*x + 0.1*xdot + 0.2*x**3", "cos(t)", "0.2", "0.8"),
     "no clock": si.ImpactOscillator("x - (1 - x**2)*xdot", "0", "-1.5", "0.8"),
@@ -50,23 +35,38 @@ KINDS = {
 }
 
 
+def stopped(study, monkeypatch, file, path, calls):
+    """A study that is interrupted in one of its first cases, and keeps the others in a file."""
+    with ThreadPoolExecutor(1) as pool:
+        interrupted(monkeypatch, f"singimpact.dynamics.{path}", "settle", calls)
+        with pytest.raises(KeyboardInterrupt):
+            study(executor=pool, output=file)
+        monkeypatch.undo()
+
+
+@pytest.mark.parametrize("wall", ["lower", "upper"])
+def test_basins_that_were_interrupted_go_on(wall, monkeypatch, tmp_path):
+    study = partial(si.basins, PAIR, size=40, wall=wall)
+    whole = study()
+    stopped(study, monkeypatch, tmp_path / "kept.npz", "settling:_Run", 2)
+    with ThreadPoolExecutor(4) as pool:
+        for found in (study(executor=pool, output=tmp_path / "kept.npz"), study(output=tmp_path / "kept.npz")):
+            assert np.array_equal(found.codes, whole.codes)
+            assert [run.tau.tolist() for run in found.attractors] == [run.tau.tolist() for run in whole.attractors]
+
+
 @pytest.mark.parametrize("kind", KINDS)
-def test_basins_of_every_kind_of_model_go_on(kind, monkeypatch, tmp_path):
+def test_studies_of_every_kind_of_model_go_on(kind, monkeypatch, tmp_path):
     study = partial(si.basins, KINDS[kind], size=12, impacts=500)
     whole, path = study(), "synchrony:Responses" if kind == "no period" else "settling:_Run"
-    with ThreadPoolExecutor(1) as pool:
-        interrupted(monkeypatch, f"singimpact.dynamics.{path}", "settle", 1 if kind.startswith("no") else 2)
-        with pytest.raises(KeyboardInterrupt):
-            study(executor=pool, output=tmp_path / "kept.npz")
-        monkeypatch.undo()
-        found = study(executor=pool, output=tmp_path / "kept.npz")
+    stopped(study, monkeypatch, tmp_path / "kept.npz", path, 1 if kind.startswith("no") else 2)
+    found = study(output=tmp_path / "kept.npz")
     assert np.array_equal(found.codes, whole.codes)
     assert [run.name for run in found.attractors] == [run.name for run in whole.attractors]
     over = partial(si.bifurcation, KINDS[kind], "clearance", (0.1, 0.15), 4, impacts=60, kept=20, settle=500)
-    one = over()
-    over(output=tmp_path / "over.npz")
-    again = over(output=tmp_path / "over.npz")
-    assert np.array_equal(one.events, again.events, equal_nan=True)
+    again = [over(output=tmp_path / "over.npz") for _ in range(2)]
+    for diagram in again:
+        assert np.array_equal(over().events, diagram.events, equal_nan=True)
 
 
 def test_states_of_another_wall_are_not_taken_up(tmp_path):
