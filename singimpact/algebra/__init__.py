@@ -8,10 +8,9 @@ from singimpact.handed_on import names_of
 _FILES = {
     "balls": "Balls Zero as_rational ball_of",
     "certificates": (
-        "collected definite established identical negative_on positive_in positive_on roots_inside sign_chain value_at"
+        "collected definite identical left_behind negative_on positive_in positive_on roots_inside sign_chain value_at"
     ),
     "certified": "Certified from_ends",
-    "checking": "accepts",
     "derivations": "At substitution",
     "expressions": "FOLDING Number Root evaluate function_of walk",
     "gathering": "Remembered",
@@ -21,12 +20,10 @@ _FILES = {
     "long_sums": "LongSum Monomials Products order_key primed",
     "numbers": "as_float as_mpf compare constant exact float_array rational_near sign_of",
     "parsing": "DEFINITIONS from_sympy parse",
-    "plain": "times",
     "polynomials": "Exponents",
     "precision": "balls_at series_of_any_length",
     "puiseux": "NoExpansion expansion",
     "rings": "DOUBLES EXACT Exact Multiprecision SYMBOLIC SymbolRing to_sympy",
-    "sentences": "sentence",
     "taylor": "NotSmooth",
     "univariate": "precision_of real_roots",
 }

@@ -1,8 +1,8 @@
-"""Statements about polynomials "for all r in (0, 1)", proved: certificates made here, and believed once checked.
+"""Statements about polynomials "for all r in (0, 1)", proved: their certificates are made here.
 
-A certificate is plain data.  It counts only when `checking.accepts` has verified it from the data alone; then it joins
-the collection that the caller has opened (`gathering.collected`), beside the verdict that rests on it.  Certificates of
-series, substitutions and motions are made in `derivations`.
+A certificate is plain data.  It joins the collection that the caller has opened (`gathering.collected`), and counts
+once the second program of `certificates`, which shares nothing with this room, has verified it from the data alone.
+Certificates of series, substitutions and motions are made in `derivations`.
 """
 
 from collections.abc import Mapping, Sequence
@@ -15,7 +15,7 @@ from typing import Any
 import sympy
 
 from singimpact.algebra.derivations import terms_of
-from singimpact.algebra.gathering import Certificate as Certificate, collected as collected, established
+from singimpact.algebra.gathering import Certificate as Certificate, collected as collected, left_behind
 
 Box = Mapping[Any, tuple[Any, Any]]
 
@@ -86,7 +86,8 @@ def positive_in(expression: Any, box: Box) -> bool:
         "sign": 1,
     }
     proof["expansion"] = [[key, str(Fraction(value) * scale**2)] for key, value in proof["expansion"]]
-    return established(data | proof)
+    left_behind(data | proof)
+    return True
 
 
 def expansion(poly: Any, box: Sequence[tuple[Any, Any]]) -> Certificate | None:
@@ -176,6 +177,8 @@ def roots_inside(expression: Any, variable: Any, low: Any, high: Any) -> int:
         if rest.is_zero:
             break
         chain.append(-rest.primitive()[1])
+    if chain[-1].degree() > 0:
+        raise ArithmeticError(f"a Sturm chain proves nothing of {poly.as_expr()}: it has a multiple root")
     data = {
         "kind": "count",
         "variables": [str(variable)],
@@ -186,8 +189,7 @@ def roots_inside(expression: Any, variable: Any, low: Any, high: Any) -> int:
         "high": str(high),
         "roots": count,
     }
-    if not established(data):
-        raise ArithmeticError(f"the Sturm chain of {poly.as_expr()} is not accepted: it has a multiple root")
+    left_behind(data)
     return count
 
 
@@ -201,6 +203,8 @@ def sign_chain(expression: Any, variable: Any, signs: Sequence[tuple[Any, int]],
     (True, False)
     """  # noqa: E501
     poly = sympy.Poly(expression, variable, *box, domain="QQ").primitive()[1]
+    if not all(one < two for (one, _), (two, _) in pairwise(signs)):
+        return False
     places = []
     for at, sign in signs:
         value = sympy.Poly(_value_or_leading(poly.as_expr(), variable, at) * sign, *box, domain="QQ")
@@ -211,7 +215,7 @@ def sign_chain(expression: Any, variable: Any, signs: Sequence[tuple[Any, int]],
             raise ArithmeticError(f"no certificate was found for the sign of {expression} at {variable} = {at}")
         places.append({"at": str(at), "sign": sign} | {name: proof[name] for name in ("degree", "raised", "expansion")})
     gaps = [[a["at"], b["at"]] for a, b in pairwise(places) if a["sign"] != b["sign"]]
-    return established(
+    left_behind(
         {
             "kind": "chain",
             "variables": [str(variable), *map(str, box)],
@@ -222,6 +226,7 @@ def sign_chain(expression: Any, variable: Any, signs: Sequence[tuple[Any, int]],
             "all": len(gaps) == poly.degree(variable),
         }
     )
+    return True
 
 
 def _value_or_leading(expression: Any, variable: Any, at: Any) -> Any:
@@ -252,8 +257,7 @@ def value_at(expression: Any, variable: Any, point: Any) -> Any:
         "at": str(point),
         "value": "infinite" if limit == sympy.zoo else [terms_of(side, variables) for side in _quotient(limit)],
     }
-    if not established(data):
-        raise ArithmeticError(f"the value of {expression} at {variable} = {point} is not certified")
+    left_behind(data)
     return limit
 
 
@@ -282,12 +286,15 @@ def definite(form: Any, x: Any, y: Any) -> int:
         return 0
     values = [poly.coeff_monomial(square) for square in (x**2, x * y, y**2)]
     sign = int(sympy.sign(values[0]))
+    if values[1] ** 2 >= 4 * values[0] * values[2]:
+        return 0
     data = {"kind": "definite", "variables": [str(x), str(y)], "form": [str(value) for value in values], "sign": sign}
-    return sign if established(data) else 0
+    left_behind(data)
+    return sign
 
 
 def identical(left: Any, right: Any) -> bool:
-    """Record that two rational functions are equal, or two with one square root.
+    """Record that two rational functions are equal, or two with one square root; the caller has shown that they are.
 
     Returns
     -------
@@ -314,7 +321,7 @@ def identical(left: Any, right: Any) -> bool:
     if [sympy.expand(polynomial) for polynomial in sides[0]] == [sympy.expand(polynomial) for polynomial in sides[1]]:
         return False
     variables = [*names, w]
-    return established(
+    left_behind(
         {
             "kind": "identity",
             "variables": [str(name) for name in variables],
@@ -325,6 +332,7 @@ def identical(left: Any, right: Any) -> bool:
             else None,
         }
     )
+    return True
 
 
 def _related(sides: list[Any], relation: Any, w: Any) -> tuple[Any, Any, Any]:

@@ -1,7 +1,7 @@
 """Certificates of derivations: what was substituted into what, and the motion that a series is.
 
-They join the open collection.  Each function does nothing while none is open, and raises when the checker refuses what
-was derived.
+They join the open collection.  Each function does nothing while none is open, and decides nothing: what was derived
+wrongly leaves a certificate that the second program refuses.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -34,18 +34,14 @@ def substitution(
     order, small : up to a total degree in these variables; exactly without.
     where : a polynomial of degree 2 in its last variable, given as (polynomial, variable): the identity holds at its roots.
 
-    Raises
-    ------
-    ArithmeticError : it is not so.
-
     Examples
     --------
     >>> from singimpact.algebra.gathering import collected
     >>> x, e = sympy.symbols("x e")
     >>> with collected() as found:
     ...     substitution(At(x**2, {x: 1 + e}), 1 + 2 * e, order=1, small=[e])
-    >>> found[0]["says"]
-    '[x**2 at x = e + 1] = 2*e + 1, up to degree 1 in e'
+    >>> [found[0][name] for name in ("kind", "variables", "weights", "order")]
+    ['composed', ['e', 'x'], [1, 0], 1]
     """  # noqa: E501
     if not gathering():
         return
@@ -147,10 +143,6 @@ def motion(
     acceleration : n -> coefficient of (tau - tau_*)^n. force : (i, k) -> coefficient of x^i x'^k.
     order : of height/t, a total degree in (sigma, v, t); None for an exact solution.
     launch : v_c(sigma, t), for which height/t = 0. landing : x' then.
-
-    Raises
-    ------
-    ArithmeticError : it is not so.
     """
     if not gathering():
         return
@@ -180,10 +172,6 @@ def flight(contact: Any, order: int, rise: Mapping[Any, Any], launch: Any, landi
     ----------
     contact : with the jets a, f and the ring of exact coefficients, rationals or with symbols. order : of the velocities.
     rise, launch, landing : exponents of (z, sigma, t), or (sigma, t) -> coefficient.
-
-    Raises
-    ------
-    ArithmeticError : it is not so.
     """  # noqa: E501
     names = tuple(getattr(contact.ring, "names", ()))
 

@@ -1,6 +1,7 @@
 """The open collection of certificates, which a derivation hands its own to, also when its value comes from a cache.
 
-Nothing here makes a certificate (`certificates`, `derivations`) or checks one by itself (`checking`).
+Nothing here makes a certificate (`certificates`, `derivations`), and nothing in this room checks one: the claims hand
+what was gathered to the second program, which shares no code with the makers.
 """
 
 from collections.abc import Callable, Hashable, Iterator
@@ -8,9 +9,6 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import wraps
 from typing import Any, ParamSpec, TypeVar
-
-from singimpact.algebra.checking import accepts
-from singimpact.algebra.sentences import sentence
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -20,7 +18,7 @@ _OPEN: ContextVar[list[Certificate] | None] = ContextVar("certificates", default
 
 @contextmanager
 def collected() -> Iterator[list[Certificate]]:
-    """A list that gathers every certificate established while it is open, each once."""
+    """A list that gathers every certificate left while it is open, each once; none of them is checked yet."""
     found: list[Certificate] = []
     token = _OPEN.set(found)
     try:
@@ -29,38 +27,16 @@ def collected() -> Iterator[list[Certificate]]:
         _OPEN.reset(token)
 
 
-def established(certificate: Certificate) -> bool:
-    """Whether the checker accepts a certificate; if so it joins the open collection, with the sentence of its data."""
-    if not accepts(certificate):
-        return False
-    certificate = {"kind": certificate["kind"], "says": sentence(certificate), **certificate}
-    gathering = _OPEN.get()
-    if gathering is not None and certificate not in gathering:
-        gathering.append(certificate)
-    return True
-
-
 def gathering() -> bool:
     """Whether a collection is open: without one a derivation need not make its certificate."""
     return _OPEN.get() is not None
 
 
 def left_behind(certificate: Certificate) -> None:
-    """The certificate of a derivation joins the open collection.
-
-    Raises
-    ------
-    ArithmeticError : the checker refuses it, so that what was derived is wrong.
-    """
-    if not established(certificate):
-        raise ArithmeticError(f"the certificate of a derivation is refused: {_said(certificate)}")
-
-
-def _said(certificate: Certificate) -> str:
-    try:
-        return sentence(certificate)
-    except (KeyError, TypeError, ValueError, IndexError) as error:
-        return f"its data are damaged, {error}"
+    """A certificate joins the open collection, unchecked."""
+    collection = _OPEN.get()
+    if collection is not None and certificate not in collection:
+        collection.append(certificate)
 
 
 class Remembered:
@@ -88,7 +64,7 @@ class Remembered:
                 stored = derive(), None
             self._results[key] = stored
         collection = _OPEN.get()
-        if collection is not None:  # certificates that were accepted before join it, each once
+        if collection is not None:  # certificates that were left before join it, each once
             collection += [proof for proof in stored[1] or () if proof not in collection]
         return stored[0]
 

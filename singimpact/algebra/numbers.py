@@ -286,8 +286,8 @@ OF_TWO: dict[str, Callable[[Expression, Expression], Expression]] = {
     "truediv": lambda left, right: multiply(left, bounded_power(right, MINUS_ONE)),
     "pow": bounded_power,
 }
+# Operations that need a value
 DECIDING = ("bool", "float", "int", "index", "complex", "lt", "le", "gt", "ge", "eq", "ne", "floordiv", "mod", "round")
-"""Operations that need a value."""
 
 
 class Letter:

@@ -58,6 +58,7 @@ _TOKEN = re.compile(
     r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[^\W\d]\w*)|(?P<sign>\*\*|[-+*/(),^.]))",
     re.ASCII,
 )
+# Analytic functions in terms of `FUNCTIONS`, which are put in when an expression is read
 DEFINITIONS = {
     "sinh": "(exp(w) - exp(-w))/2",
     "cosh": "(exp(w) + exp(-w))/2",
@@ -75,11 +76,11 @@ DEFINITIONS = {
     "log2": "log(w)/log(2)",
     "log10": "log(w)/log(10)",
 }
-"""Analytic functions in terms of `FUNCTIONS`, which are put in when an expression is read."""
 _LANGUAGE = f"numbers, + - * / **, pi and {' '.join(FUNCTIONS)} {' '.join(DEFINITIONS)}"
 SYNONYMS = {"ln": "log", "Abs": "abs", "fabs": "abs", "absolute": "abs"} | {
     f"arc{name[1:]}": name for name in ("atan", "asin", "acos", "asinh", "acosh", "atanh")
 }
+# What stands for functions that are not smooth, with a small number eps
 SMOOTH = {
     "sign": "tanh(w/eps) for sign(w)",
     "Heaviside": "(1 + tanh(w/eps))/2 for Heaviside(w)",
@@ -87,7 +88,6 @@ SMOOTH = {
     "Min": "(a + b - sqrt((a - b)**2 + eps**2))/2 for Min(a, b)",
     "Piecewise": "left + (right - left)*(1 + tanh(w/eps))/2 for the two sides of w = 0",
 }
-"""What stands for functions that are not smooth, with a small number eps."""
 ROUGH = {"sgn": "sign", "heaviside": "Heaviside", "where": "Piecewise"} | {
     name: name.title()[:3] for name in ("max", "min", "maximum", "minimum")
 }

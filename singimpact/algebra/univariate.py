@@ -180,19 +180,20 @@ def precision_of(ring: Any) -> Iterator[None]:
 FIRST_BITS = 128
 
 
-def real_roots(coefficients: Sequence[Fraction], balls: Balls) -> list[flint.arb]:
+def real_roots(polynomial: flint.fmpq_poly, balls: Balls) -> list[flint.arb]:
     """The real roots in increasing order, each in a ball that contains no other root.
 
     Parameters
     ----------
-    coefficients : from the constant one up; a polynomial without multiple real roots.
+    polynomial : one without multiple real roots.
 
     Examples
     --------
-    >>> [float(root.mid()) for root in real_roots([Fraction(-2), Fraction(0), Fraction(1)], Balls(80))]
+    >>> import flint
+    >>> [float(root.mid()) for root in real_roots(flint.fmpq_poly([-2, 0, 1]), Balls(80))]
     [-1.4142135623730951, 1.4142135623730951]
     """
-    poly: Any = flint.fmpq_poly([flint.fmpq(c.numerator, c.denominator) for c in coefficients]).numer()
+    poly: Any = polynomial.numer()
     isolated: list[Any] = [root.real for root, _ in poly.complex_roots() if root.imag == 0]
     return [refined(poly, root, balls.bits) for root in sorted(isolated, key=cmp_to_key(_order))]
 

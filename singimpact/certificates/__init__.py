@@ -1,6 +1,6 @@
 """Certified results as files, and the second programs that check them and the proofs of claims.
 
-Not here: how a result is certified (`flights`), how certificates of polynomials are made and first checked (`algebra`).
+Not here: how a result is certified (`flights`), how certificates of polynomials are made (`algebra`).
 """
 
 from singimpact.handed_on import names_of
@@ -18,6 +18,7 @@ _FILES = {
     "checker.nonlinear": "Flights Growing",
     "checker.periodic_orbit": "Orbits",
     "checker.told": "read",
+    "claims_proofs": "check_certificate",
     "claims_checker": "Refused STATED STRONGEST_FIRST check_words statement_of",
 }
 __getattr__ = names_of(__name__, _FILES)

@@ -1,8 +1,8 @@
 """The second program for claims: `python claims_checker.py DIR/*.json`, DIR of `singimpact verify --certificates DIR`.
 
 This file stands alone but for two beside it, `claims_proofs.py` and the list `claims_stated.json`.  They import
-python-flint and the standard library; their polynomials are flint's, their rules and sentences are written anew.  A
-file holds when
+python-flint and the standard library, and no file of the prover (`singimpact.algebra`).  `singimpact verify` runs
+`claims_proofs` before it gives a verdict, and this program runs it on files.  A file holds when
 
     its title, printed and corrected statement and verdict are those of the claim in the list;
     its digest is that of its content, and its words agree: the effective verdict is no stronger than the argument and
@@ -147,7 +147,7 @@ def check(content: Any, below: Mapping[str, Mapping[str, Any]] | None = None) ->
         check_supported(content, below or {})
         for n, certificate in enumerate(content["certificates"]):
             try:
-                check_certificate(certificate)
+                need(check_certificate(certificate) == certificate.get("says"), "it says nothing")
             except Refused as reason:
                 raise Refused(f"certificate {n}: {reason}") from None
     return len(content["certificates"])

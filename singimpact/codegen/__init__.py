@@ -13,6 +13,7 @@ _FILES = {
     "lowering": "REAL WHOLE Unsupported lowered",
     "object_code": "emitted loaded",
     "over_lists": "FUNCTIONS",
+    "polynomial_source": "module_source",
     "radii": (
         "atan_radius bell_radius circular_radius exp_radius log_of_square_radius log_radius power_of_square_radius "
         "power_radius softplus_radius tan_radius tanh_radius whole_power_radius"

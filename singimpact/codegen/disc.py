@@ -235,13 +235,13 @@ def _may_be_singular(tree: Expression) -> bool:
     return False
 
 
+# How far a polynomial and its derivative move on the disc
 SUMS = """{1}, {1}dot, power = R * abs({0}[1]), 0 * R, R
 for k in range(2, n + 1):
     power *= R
     {1} += abs({0}[k]) * power
     {1}dot += k * abs({0}[k]) * power
 {1}dot /= R""".splitlines()
-"""How far a polynomial and its derivative move on the disc."""
 
 
 def disc_source(writer: DiscWriter, parts: list[Expression]) -> str:

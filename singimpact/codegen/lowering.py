@@ -15,14 +15,14 @@ from llvmlite import ir
 from singimpact.codegen.over_lists import FUNCTIONS
 
 WHOLE, REAL, TRUTH, NOTHING = ir.IntType(64), ir.DoubleType(), ir.IntType(1), ir.VoidType()
+# Functions that LLVM knows; it calls the others of `FUNCTIONS` in the system's library of mathematics
 INTRINSICS = {"sin", "cos", "exp", "log", "pow", "fabs"}
-"""Functions that LLVM knows; it calls the others of `FUNCTIONS` in the system's library of mathematics."""
 SIGNS = {ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!="}
 OPERATIONS = {ast.Add: "add", ast.Sub: "sub", ast.Mult: "mul"}
 
 
+# A value of the text: llvmlite gives its classes no types; or an `Array`, or `Fields`
 Value = Any
-"""A value of the text: llvmlite gives its classes no types; or an `Array`, or `Fields`."""
 Kind = Any
 Kinds = tuple[Kind, ...]
 

@@ -5,8 +5,8 @@ from functools import lru_cache
 from types import CodeType
 from typing import Any
 
+# The functions of one number that emitted text and kernels call
 FUNCTIONS = ("sin", "cos", "tan", "exp", "log", "tanh", "atan", "expm1", "log1p", "sinh")
-"""The functions of one number that emitted text and kernels call."""
 
 
 def plain(text: str, functions: dict[str, Any]) -> dict[str, Any]:

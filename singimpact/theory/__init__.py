@@ -27,7 +27,7 @@ _FILES = {
     "completion": "leaves symbolic_completion",
     "contact_points": "multiplier",
     "fixed_points": "as_dict swan tangency",
-    "frozen": "CURVED MOVED PLACES completion_module curve_module sheet_module",
+    "frozen": "CURVED MOVED PLACES completion_module curve_functions sheet_functions",
     "gamma_in_symbols": "rho_names symbolic_curve",
     "gamma_series": "invariant_curve multiplier_across restitution_of",
     "grazing": "grazing_map",

@@ -209,14 +209,9 @@ def _equation(j: int) -> tuple[list[int], list[int]]:
 def _rational_multiplier(j: int, r: Fraction | None) -> Fraction | None:
     if r is None:
         return None
-    above, below = _equation(j)
-    _, factors = (flint.fmpq_poly(above) - flint.fmpq_poly(below) * flint.fmpq(r.numerator, r.denominator)).factor()
-    for factor, _ in factors:
-        if factor.degree() == 1:
-            root = -factor[0] / factor[1]
-            if 0 < root < 1:
-                return Fraction(int(root.p), int(root.q))
-    return None
+    above, below = map(flint.fmpq_poly, _equation(j))
+    roots = (above - below * flint.fmpq(r.numerator, r.denominator)).roots()
+    return next((Fraction(int(root.p), int(root.q)) for root, _ in roots if 0 < root < 1), None)
 
 
 def _multiplier_ball(j: int, r: flint.arb, bits: int) -> flint.arb:

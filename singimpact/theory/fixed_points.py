@@ -5,6 +5,8 @@ the same polynomial shifted to 1: so nothing is lost as r -> 0 or as r -> 1.  Is
 As functions of r (`of_m`, `series`, `minimal_polynomial`) they are in `multipliers`, and reached from here too.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
@@ -16,6 +18,7 @@ from singimpact.algebra.numbers import as_fraction, constant
 from singimpact.algebra.precision import balls_at
 from singimpact.algebra.univariate import real_roots
 from singimpact.contact.contact import contact_order
+from singimpact.handed_on import flint
 from singimpact.inputs import InputError, checked_keywords, refuse, whole
 from singimpact.result import Result, columns_of, in_words
 
@@ -97,12 +100,12 @@ def tangency(r: Any, digits: int = 50) -> TangencyFixedPoints:
     rate, precision = _restitution(r), whole("digits", digits, 1, MOST_DIGITS)
 
     def enclosures(balls: Balls) -> dict[str, Any]:
-        half = Fraction(1, 2)
-        found = _multipliers(1, rate, balls)
-        low, middle, _ = real_roots(_shifted(_fixed_polynomial(1, rate), -half), balls)  # in m = lambda + 1/2
-        Q = [-rate, -rate, 2 * rate + Fraction(9, 4)]  # Q_r(1, y + 1/2) = r (2y + 1)(y - 1) + (9/4) y^2
-        minus, plus = real_roots(_shifted(Q, -half), balls)
-        third = found["lambda_"] + balls.rational(half)
+        found, lowered = _multipliers(1, rate, balls), flint.fmpq_poly([-1, 2]) / 2  # m - 1/2
+        low, middle, _ = real_roots(_fixed_polynomial(1, rate)(lowered), balls)  # in m = lambda + 1/2
+        r = flint.fmpq(rate.numerator, rate.denominator)
+        Q = flint.fmpq_poly([-r, -r, 2 * r + flint.fmpq(9, 4)])  # Q_r(1, y + 1/2) = r (2y + 1)(y - 1) + (9/4) y^2
+        minus, plus = real_roots(Q(lowered), balls)
+        third = found["lambda_"] + balls.rational(Fraction(1, 2))
         return found | {"m1": low, "m2": middle, "m3": third, "m_minus": minus, "m_plus": plus}
 
     return TangencyFixedPoints(**_certified(enclosures, precision))
@@ -166,66 +169,41 @@ def _restitution(value: Any) -> Fraction:
 
 
 @cache
-def numerator_coefficients(j: int) -> tuple[int, ...]:
-    """P_j = sum (j+1-i) lambda^i by its coefficients; Q_j is its reversal."""
-    return tuple(j + 1 - i for i in range(j + 1))
+def _P_and_Q(j: int) -> tuple[flint.fmpz_poly, flint.fmpz_poly]:
+    """P_j = sum (j+1-i) lambda^i, and Q_j, its reversal."""
+    coefficients = [j + 1 - i for i in range(j + 1)]
+    return flint.fmpz_poly(coefficients), flint.fmpz_poly(coefficients[::-1])
 
 
-def _fixed_polynomial(j: int, rate: Fraction) -> list[Fraction]:
-    """lambda^(j+1) P_j - r Q_j, coefficients from the constant one."""
-    p = numerator_coefficients(j)
-    return [*(-rate * value for value in reversed(p)), *map(Fraction, p)]
-
-
-def _shifted(coefficients: list[Fraction], by: Fraction) -> list[Fraction]:
-    """The polynomial at x + by, by Horner's rule."""
-    result = list(coefficients)
-    for start in range(len(result) - 1):
-        for n in range(len(result) - 2, start - 1, -1):
-            result[n] += by * result[n + 1]
-    return result
+def _fixed_polynomial(j: int, rate: Fraction) -> flint.fmpq_poly:
+    """lambda^(j+1) P_j - r Q_j."""
+    P, Q = map(flint.fmpq_poly, _P_and_Q(j))
+    return flint.fmpq_poly([0] * (j + 1) + [1]) * P - Q * flint.fmpq(rate.numerator, rate.denominator)
 
 
 def _multipliers(j: int, rate: Fraction, balls: Balls) -> dict[str, Any]:
     """lambda, 1 - lambda, mu, mu - 1 at contact order j, each without cancellation."""
-    polynomial = _fixed_polynomial(j, rate)
-    (multiplier,) = [root for root in real_roots(polynomial, balls) if root > 0]  # one change of sign
-    flipped = [value * (-1) ** n for n, value in enumerate(_shifted(polynomial, Fraction(1)))]  # in u = 1 - lambda
+    equation = _fixed_polynomial(j, rate)
+    (multiplier,) = [root for root in real_roots(equation, balls) if root > 0]  # one change of sign
+    flipped = equation(flint.fmpq_poly([1, -1]))  # in u = 1 - lambda
     (gap,) = [root for root in real_roots(flipped, balls) if root > 0 and root < 1]
-    p, q = numerator_coefficients(j), numerator_coefficients(j)[::-1]
-    above, below = _value(p, multiplier, balls), _value(q, multiplier, balls)
-    rest = _value(_quotient(j), multiplier, balls)
+    above, below = (polynomial(multiplier) for polynomial in _P_and_Q(j))
     return {
         "lambda_": multiplier,
         "one_minus_lambda": gap,
         "mu": (above / below) ** 2 / multiplier,
-        "mu_minus_one": gap * rest / (multiplier * below**2),
+        "mu_minus_one": gap * _quotient(j)(multiplier) / (multiplier * below**2),
     }
 
 
 @cache
-def _quotient(j: int) -> tuple[int, ...]:
+def _quotient(j: int) -> flint.fmpz_poly:
     """(P_j^2 - lambda Q_j^2)/(1 - lambda): all its coefficients are positive."""
-    p, q = numerator_coefficients(j), numerator_coefficients(j)[::-1]
-    difference = [0] * (2 * j + 2)
-    for i in range(j + 1):
-        for n in range(j + 1):
-            difference[i + n] += p[i] * p[n]
-            difference[i + n + 1] -= q[i] * q[n]
-    quotient, carry = [], 0
-    for value in difference[:-1]:
-        carry += value
-        quotient.append(carry)
-    if carry + difference[-1]:
+    P, Q = _P_and_Q(j)
+    quotient, rest = divmod(P**2 - flint.fmpz_poly([0, 1]) * Q**2, flint.fmpz_poly([1, -1]))
+    if rest:
         raise ArithmeticError("P^2 - lambda Q^2 is not divisible by 1 - lambda")
-    return tuple(quotient)
-
-
-def _value(coefficients: tuple[int, ...], at: Any, balls: Balls) -> Any:
-    total = balls.rational(Fraction(0))
-    for value in reversed(coefficients):
-        total = total * at + value
-    return total
+    return quotient
 
 
 def _certified(enclosures: Any, digits: int) -> dict[str, Certified]:

@@ -21,7 +21,6 @@ from singimpact.theory.completion import symbolic_completion
 from singimpact.theory.gamma_in_symbols import length_weight, symbolic_curve
 from singimpact.theory.impact_sheet import generic_sheet, sheet
 
-ORDER = 6  # total degree of what is frozen: one digit of v_c per third of a decade in t, and a file that can be read
 PLACES = ("generic", "tangency", "swan")
 CURVED = {"fibre": (0, 4), "gamma_tangency": (1, 5), "gamma_swan": (2, 6)}  # contact order, last power of sigma
 MOVED = {"motion_tangency": (1, 4), "motion_swan": (2, 4)}
@@ -48,12 +47,6 @@ def _coefficient(value: Any) -> dict[tuple[int, ...], Fraction]:
     return {tuple(map(int, key)): Fraction(int(c.p), int(c.q)) for key, c in value.to_dict().items()}
 
 
-def sheet_module() -> str:
-    """v_c and the impact velocity at a regular point, a tangency and a swan, as one file."""
-    title = "v_c and the impact velocity as functions of (sigma, t) and the jets."
-    return module_source(title, COMMAND, sheet_functions(ORDER))
-
-
 def sheet_functions(order: int) -> list[str]:
     """The source of both velocities at each place, to total degree `order`."""
     functions = []
@@ -64,12 +57,6 @@ def sheet_functions(order: int) -> list[str]:
             says = f"{what} velocity at a {place} point, to total degree {order} in (sigma, t)."
             functions.append(velocity_source(f"{name}_{place}", jet, names, says))
     return functions
-
-
-def curve_module() -> str:
-    """gamma, the motion on it, the fibre, tau_inf and the outline of p at a tangency, as one file."""
-    title = "Curves of the theory as functions of one variable, lambda and the jets."
-    return module_source(title, COMMAND, curve_functions())
 
 
 def completion_module() -> str:

@@ -7,6 +7,7 @@ from typing import Any
 
 from singimpact.algebra.certified import Certified
 from singimpact.algebra.precision import kept_property
+from singimpact.algebra.solving import halved
 from singimpact.handed_on import sympy
 from singimpact.inputs import InputError, refuse
 
@@ -130,13 +131,8 @@ class PowerSeries:
         if not self.further:
             raise InputError("valid_within needs numbers: the coefficients of this series have symbols; give model=")
         sizes = {n: abs(float(c)) for n, c in self._numbers.items()}
-        low, high = 0.0, TRUST.root * _radius({**sizes, **dict(self.further)})
-        if high == inf:
-            return inf
-        for _ in range(200):
-            middle = (low + high) / 2
-            low, high = (middle, high) if self._good(middle, tolerance, sizes) else (low, middle)
-        return float(low)
+        most = TRUST.root * _radius({**sizes, **dict(self.further)})
+        return inf if most == inf else halved(lambda radius: self._good(radius, tolerance, sizes), 0.0, most)[0]
 
     def _good(self, radius: float, tolerance: float, sizes: Mapping[int, float]) -> bool:
         lead = min(n for n, size in sizes.items() if size)

@@ -138,8 +138,8 @@ def one_of(*words: str) -> Callable[[Any, str], None]:
     return form
 
 
-def ball(sign: int = 0, *, exact: bool = False) -> Callable[[Any, str], None]:
-    """A number with its radius; with a sign, all numbers of the ball have it; `exact` : the value is 0."""
+def ball(sign: int = 0) -> Callable[[Any, str], None]:
+    """A number with its radius; with a sign, all numbers of the ball have it."""
 
     def form(written: Any, where: str) -> None:
         require({"value": number(), "radius": number(low=0)}, written, where)
@@ -148,7 +148,6 @@ def ball(sign: int = 0, *, exact: bool = False) -> Callable[[Any, str], None]:
         need(
             "rough", radius * ROUGH <= size, f"{where} = {written['value']:.40} has the radius {written['radius']:.40}"
         )
-        expect(not exact or value == 0, f"{where} is not 0")
 
     return form
 

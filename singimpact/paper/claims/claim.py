@@ -1,10 +1,13 @@
 """`Claim`: a sentence of the paper that can be checked.  `Verdict`: what its verifier found."""
 
+import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
+from functools import lru_cache
 from math import floor, log10
 from typing import Any
 
+from singimpact.certificates.claims_proofs import check_certificate
 from singimpact.notebook import table
 
 PROVED = "proved"
@@ -32,6 +35,15 @@ def told(kind: str, modulo: Sequence[str]) -> str:
         return kind
     names = " and ".join(names_ for names_ in (", ".join(modulo[:-1]), modulo[-1]) if names_)
     return f"{kind} {names}" if kind == MODULO else f"{kind}, modulo {names}"
+
+
+@lru_cache(maxsize=4096)
+def statement_shown_by(certificate: str) -> str:
+    """The statement of a certificate, given as JSON, that the second program accepts; it raises where it refuses one.
+
+    Many claims share the certificates of what they rest on.
+    """
+    return check_certificate(json.loads(certificate))
 
 
 @dataclass(frozen=True)
@@ -171,21 +183,20 @@ class Claim:
         return table([], rows, f"{self.id}, section {self.section}: {self.title}")
 
 
-def in_section(section: str) -> Callable[..., Claim]:
-    """A maker of claims of one section: id, title, printed, verify, mutants, then rests_on and corrected if any."""
+@dataclass(frozen=True)
+class Encoding:
+    """A statement of the paper in the form that its verifier takes; its words stand in a file of data.
 
-    def claim(
-        name: str,
-        title: str,
-        printed: Statement,
-        verify: Callable[[Any], Check],
-        mutants: tuple[Any, ...],
-        rests_on: tuple[str, ...] = (),
-        corrected: Callable[[], Statement] | None = None,
-    ) -> Claim:
-        return Claim(name, section, title, printed, verify, mutants, corrected, rests_on)
+    Attributes
+    ----------
+    printed : the statement as printed. verify, mutants : as in `Claim`.
+    corrected : makes the statement that holds instead: its value, or a `Statement` where the LaTeX is derived too.
+    """
 
-    return claim
+    printed: Any
+    verify: Callable[[Any], Check]
+    mutants: tuple[Any, ...]
+    corrected: Callable[[], Any] | None = None
 
 
 @dataclass(frozen=True)
@@ -199,7 +210,7 @@ class Verdict:
         persists for the oscillators that tend to it, so that a proof is one in that model.
     corrected, corrected_kind : the statement that holds instead, in LaTeX, and its own verdict.
     witness : numbers at which the printed statement fails. seconds : of CPU time.
-    certificates : plain data on which the verdict rests where it is proved, each accepted by `algebra.checking`.
+    certificates : plain data on which the verdict rests where it is proved, each accepted by the second program.
     trials : of the printed and the corrected statement, on two models or more.
     modulo : theorems that its own argument uses. effective_modulo : those, and the ones along what it rests on.
     """
@@ -262,6 +273,3 @@ class Verdict:
         }
         first = ("id", "verdict", "effective", "worth", "title", "printed", "corrected", "corrected_kind", "witness")
         return {key: data[key] for key in first} | {key: value for key, value in data.items() if key not in first}
-
-
-claim_beyond = in_section("beyond")  # the maker of claims beyond the paper

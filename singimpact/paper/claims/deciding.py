@@ -1,12 +1,23 @@
 """Decide one claim: its verifier on the printed statement, on the corrected one, and trials of the two on models."""
 
+import json
 import time
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from singimpact.algebra.certificates import Certificate, collected
-from singimpact.paper.claims.claim import IN_MODEL, MODULO, PROVED, STRENGTH, Check, Claim, Trial, Verdict
+from singimpact.paper.claims.claim import (
+    IN_MODEL,
+    MODULO,
+    PROVED,
+    STRENGTH,
+    Check,
+    Claim,
+    Trial,
+    Verdict,
+    statement_shown_by,
+)
 from singimpact.paper.routes.equations import derived_from, watched
 from singimpact.paper.routes.unfolding import acceleration as model_acceleration, limit_acceleration
 
@@ -91,13 +102,17 @@ def _found(claim: Claim) -> _Found:
 def _verified(claim: Claim, value: Any) -> tuple[Check, tuple[Certificate, ...], bool]:
     """The verdict on a statement, the certificates on which it rests, and whether it is one about the model alone.
 
+    The second program checks each certificate and says what it shows; a refused one ends the verifier in an error.
     Where it used the model it is not when the verifier found the conditions by which the statement persists, and the
     claim rests on the one that oscillators tend to the model.
     """
     with collected() as gathered:
         check, labels = watched(lambda: claim.verify(value))
+    certificates = (
+        {"kind": proof["kind"], "says": statement_shown_by(json.dumps(proof)), **proof} for proof in gathered
+    )
     persists = check.transverse and SCALING in (claim.id, *claim.rests_on)
-    return check, tuple(gathered), _reaches(labels, MODEL) and not persists
+    return check, tuple(certificates), _reaches(labels, MODEL) and not persists
 
 
 def _reaches(labels: Iterable[str], goals: set[str]) -> bool:

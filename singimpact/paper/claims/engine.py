@@ -20,9 +20,9 @@ from pathlib import Path
 from typing import Any
 
 from singimpact import cache
-from singimpact.algebra.checking import accepts
 from singimpact.cache import source_digest
-from singimpact.paper.claims.claim import KINDS, Claim, Trial, Verdict
+from singimpact.certificates.claims_proofs import Refused
+from singimpact.paper.claims.claim import KINDS, Claim, Trial, Verdict, statement_shown_by
 from singimpact.paper.claims.index import CLAIMS, INDEX, Entry, entry_of
 from singimpact.progress import ProgressLine
 from singimpact.store import cache_folder
@@ -110,7 +110,7 @@ def recall(name: str, key: str) -> Verdict | None:
     try:
         digests, verdict = cache.unpacked(content, (Verdict, Trial))
         return _checked(verdict) if digests == key else None
-    except (ValueError, KeyError, TypeError) as error:
+    except (ValueError, KeyError, TypeError, Refused) as error:
         cache.damaged(_place(name), str(error))
         return None
 
@@ -118,15 +118,9 @@ def recall(name: str, key: str) -> Verdict | None:
 def _checked(verdict: Any) -> Verdict:
     if not isinstance(verdict, Verdict) or verdict.kind not in KINDS:
         raise ValueError("not a verdict")
-    if not all(_accepted(json.dumps(certificate)) for certificate in verdict.certificates):
-        raise ValueError("a certificate is not accepted")
+    for certificate in verdict.certificates:
+        statement_shown_by(json.dumps(certificate))
     return verdict
-
-
-@lru_cache(maxsize=4096)
-def _accepted(certificate: str) -> bool:
-    """Whether the checker accepts a certificate; many claims share those of what they rest on."""
-    return accepts(json.loads(certificate))
 
 
 def keep(verdict: Verdict, key: str) -> None:

@@ -1,51 +1,57 @@
 """The index of the claims: what each is called, where it is written and what it rests on, without building any.
 
-`index.json` is generated from the sections by `python derivations/freeze.py`, `beyond.json` from the claims that the
-paper does not have; a file that is loaded must agree with it.  A list, the graph and the key of a kept verdict need the
-index alone.
+The words of the claims are data, one TOML file beside each file of `sections` and `beyond`, which has the statements in
+the form that verifiers take.  A list, the graph and the key of a kept verdict need the words alone.
 """
 
 import json
 import re
+import tomllib
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import cache
 from html import escape
 from pathlib import Path
 from typing import Any
 
 from singimpact.inputs import InputError, unknown
-from singimpact.paper.claims import beyond
-from singimpact.paper.claims.claim import Claim
-from singimpact.paper.claims.sections import SECTIONS
+from singimpact.paper.claims import beyond, sections
+from singimpact.paper.claims.claim import Claim, Encoding, Statement, Trials
 
-PLACE, BEYOND_PLACE = (Path(__file__).with_name(name) for name in ("index.json", "beyond.json"))
-FILES = SECTIONS | beyond.BEYOND
+FOLDER = Path(__file__).parent
 
 
 @dataclass(frozen=True)
 class Entry:
-    """One line of the index.
+    """The words of a claim.
 
     Attributes
     ----------
     id, section, title, rests_on : as in `Claim`. file : of `sections` or `beyond`, that the claim is written in.
+    printed, corrected : LaTeX of the statements; no correction where nothing is wrong, or where its LaTeX is derived.
     """
 
     id: str
-    section: str
-    title: str
     file: str
+    title: str
+    printed: str
+    section: str = "beyond"
+    corrected: str | None = None
     rests_on: tuple[str, ...] = ()
 
 
-def _read(place: Path) -> dict[str, Entry]:
-    lines = json.loads(place.read_text(encoding="utf-8")) if place.exists() else []
-    return {line["id"]: Entry(**(line | {"rests_on": tuple(line["rests_on"])})) for line in lines}
+def _read(folder: str, files: Iterable[str]) -> dict[str, Entry]:
+    entries = {}
+    for file in files:
+        words = tomllib.loads((FOLDER / folder / f"{file}.toml").read_text(encoding="utf-8"))
+        for name, fields in words.items():
+            rests_on = tuple(fields.pop("rests_on", ()))
+            entries[name] = Entry(name, file, rests_on=rests_on, **fields)
+    return entries
 
 
-INDEX: dict[str, Entry] = _read(PLACE)  # the claims of the paper
-BEYOND: dict[str, Entry] = _read(BEYOND_PLACE)  # the claims that the paper does not have
+INDEX = _read("sections", sections.FILES)  # the claims of the paper
+BEYOND = _read("beyond", beyond.FILES)  # the claims that the paper does not have
 
 
 def entry_of(name: str) -> Entry:
@@ -72,37 +78,43 @@ def places_in_paper() -> list[dict[str, Any]]:
     return places
 
 
-def entries_of(file: str) -> tuple[Entry, ...]:
-    """The entries of one file of `sections` or `beyond`, from the claims that it makes."""
-    return tuple(Entry(claim.id, claim.section, claim.title, file, claim.rests_on) for claim in FILES[file]())
-
-
-def written_index(files: Iterable[str] = SECTIONS) -> str:
-    """The text of `index.json`, or of the index of other files: one line a claim, in the order of the files."""
-    lines = [json.dumps(asdict(entry)) for file in files for entry in entries_of(file)]
-    return "[\n" + ",\n".join(lines) + "\n]\n"
-
-
 @cache
 def claims_in(file: str) -> dict[str, Claim]:
     """id -> claim, of one file of `sections` or `beyond`.
 
     Raises
     ------
-    RuntimeError : the index does not agree with the file.
+    RuntimeError : the file and its words are not about the same claims.
     """
-    index, file_, folder = (INDEX, PLACE, "sections") if file in SECTIONS else (BEYOND, BEYOND_PLACE, "beyond")
-    if entries_of(file) != tuple(entry for entry in index.values() if entry.file == file):
-        raise RuntimeError(f"{file_.name} does not agree with {folder}/{file}.py: run python derivations/freeze.py")
-    return {claim.id: claim for claim in FILES[file]()}
+    entries = {name: entry for name, entry in (INDEX | BEYOND).items() if entry.file == file}
+    if file in sections.SECTIONS:
+        encodings, trials = sections.SECTIONS[file]("CLAIMS"), sections.SECTIONS[file]("TRIALS")
+    else:
+        encodings, trials = beyond.BEYOND[file]("CLAIMS"), {}
+    if encodings.keys() != entries.keys():
+        different = ", ".join(sorted(encodings.keys() ^ entries.keys()))
+        raise RuntimeError(f"{file}.toml and {file}.py do not agree: only one of them has {different}")
+    return {name: _claim(entry, encodings[name], trials.get(name)) for name, entry in entries.items()}
 
 
-def reread() -> None:
-    """Take `index.json` and `beyond.json` as they are now, after they were written anew."""
-    for index, place in ((INDEX, PLACE), (BEYOND, BEYOND_PLACE)):
-        index.clear()
-        index.update(_read(place))
-    claims_in.cache_clear()
+def _claim(entry: Entry, encoding: Encoding, trials: Trials | None) -> Claim:
+    corrected = encoding.corrected
+
+    def derived() -> Statement:
+        value = corrected() if corrected is not None else None
+        return value if isinstance(value, Statement) else Statement(entry.corrected or "", value)
+
+    return Claim(
+        id=entry.id,
+        section=entry.section,
+        title=entry.title,
+        printed=Statement(entry.printed, encoding.printed),
+        verify=encoding.verify,
+        mutants=encoding.mutants,
+        corrected=derived if corrected is not None else None,
+        rests_on=entry.rests_on,
+        trials=trials,
+    )
 
 
 class ClaimTable(Mapping[str, Claim]):

@@ -11,10 +11,8 @@ from singimpact.documents.document_steps import Section
 from singimpact.inputs import unknown
 from singimpact.paper.sections import NOTATION
 from singimpact.paper.sections.beyond_formulas import beyond
+from singimpact.paper.sections.section_formulas import section2, section3, section4, section5, section6
 from singimpact.paper.sections.section_templates import section_of
-from singimpact.paper.sections.sheet_formulas import section2, section3
-from singimpact.paper.sections.swan_formulas import section5, section6
-from singimpact.paper.sections.tangency_formulas import section4
 
 FORMULAS = (section2, section3, section4, section5, section6, beyond)
 SECTIONS: dict[str, Callable[[], Section]] = {

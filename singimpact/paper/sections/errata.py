@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import re
+import tomllib
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
 from singimpact.documents.rendering import environment, wrapping
 from singimpact.inputs import checked_keywords
 from singimpact.paper.claims.index import places_in_paper
-from singimpact.paper.sections.remarks import GRADES, PLURALS, Remark, remark_on
 from singimpact.paper.sections.stored_sections import kept_legend
 
 if TYPE_CHECKING:
@@ -67,6 +68,59 @@ def place_of(claim: str) -> Place:
     """
     where = {line["id"]: line for line in places_in_paper()}[claim]
     return Place(where["page"], where["line"], tuple(where["equations"]), where["statement"])
+
+
+# Remarks on each misprint, in `remarks.toml`: its kind, its reason, and what it does not touch. Verdicts, corrections
+# and numbers are computed; a claim that is corrected and has no remark, or has one and is not corrected, fails a test.
+
+GRADES = {
+    "slip": "slip of the pen",
+    "sign": "wrong sign",
+    "constant": "wrong constant",
+    "argument": "argument to repair",
+    "reading": "matter of reading",
+}
+PLURALS = {
+    "slip": "slips of the pen",
+    "sign": "wrong signs",
+    "constant": "wrong constants",
+    "argument": "steps of arguments to repair",
+    "reading": "matters of reading",
+}
+
+
+@dataclass(frozen=True)
+class Remark:
+    """One remark on the paper.
+
+    Attributes
+    ----------
+    claims : ids of the claims that it is about. grade : a key of `GRADES`. reason : why the printed statement fails.
+    survives : what of the paper does not depend on it, or how it is repaired.  Formulas stand between dollar signs.
+    """
+
+    claims: tuple[str, ...]
+    grade: str
+    reason: str
+    survives: str
+
+
+REMARKS = tuple(
+    Remark(tuple(fields.pop("claims")), **fields)
+    for fields in tomllib.loads(Path(__file__).with_name("remarks.toml").read_text(encoding="utf-8"))["remarks"]
+)
+
+
+@cache
+def remark_on(claim: str) -> Remark | None:
+    """The remark on a claim, by its id; None where there is none.
+
+    Examples
+    --------
+    >>> remark_on("s4b-ratio").grade, remark_on("e:meq")
+    ('constant', None)
+    """
+    return next((remark for remark in REMARKS if claim in remark.claims), None)
 
 
 # Plain words of claims, with the letters of formulas between dollar signs; loads no sympy.
@@ -128,7 +182,7 @@ class Erratum:
         """The kind of misprint, its reason, and what it does not touch; several misprints may share one remark."""
         found = remark_on(self.verdict.id)
         if found is None:
-            raise LookupError(f"{self.verdict.id} is corrected and has no remark in remarks.py")
+            raise LookupError(f"{self.verdict.id} is corrected and has no remark in remarks.toml")
         return found
 
     @property

@@ -1,6 +1,7 @@
 """Derivations and the errata's legend, kept in the user's cache folder under their source; marks of what they show."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
 
 from singimpact import cache
 from singimpact.documents.document_steps import Mark, Section, Step, claims_of
@@ -60,28 +61,31 @@ def kept_sections(names: Sequence[str] = ()) -> list[Section]:
     True
     """
     # templates are no source to the digest, which reads programs and pages alone
-    file = cache_folder() / "derivations" / f"{cache.key_of([*names, template_texts()], LIBRARIES, ABOVE)}.sections"
-    content = cache.recall(file)
-    if content is not None:
-        stored: list[Section] = cache.unpacked(content, (Section, Step))
-        return stored
-    from singimpact.paper.sections.derivation_sections import sections
+    stored: list[Section] = _kept("sections", [*names, template_texts()], (Section, Step), lambda: _derived(names))
+    return stored
 
-    derived = sections(names)
-    cache.keep(file, cache.packed(derived))
-    return derived
+
+def _derived(names: Sequence[str]) -> list[Section]:
+    from singimpact.paper.sections.derivation_sections import sections  # loads sympy
+
+    return sections(names)
 
 
 def kept_legend() -> tuple[str, ...]:
     """The result of `legend`, from the cache if it was computed before."""
-    file = cache_folder() / "derivations" / f"{cache.key_of(['legend'], LIBRARIES, ABOVE)}.legend"
+    stored: tuple[str, ...] = _kept("legend", ["legend"], (), legend)
+    return stored
+
+
+def _kept(kind: str, parts: Sequence[object], types: tuple[type, ...], derive: Callable[[], Any]) -> Any:
+    """A result from the cache, or a new one, which is kept under what it depends on."""
+    file = cache_folder() / "derivations" / f"{cache.key_of(parts, LIBRARIES, ABOVE)}.{kind}"
     content = cache.recall(file)
     if content is not None:
-        stored: tuple[str, ...] = cache.unpacked(content, ())
-        return stored
-    entries = legend()
-    cache.keep(file, cache.packed(entries))
-    return entries
+        return cache.unpacked(content, types)
+    derived = derive()
+    cache.keep(file, cache.packed(derived))
+    return derived
 
 
 # The verdicts of what sections show, as marks beside their equations.

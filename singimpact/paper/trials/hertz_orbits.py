@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from singimpact.algebra.solving import halved
 from singimpact.dynamics.remaining import rest_after
 from singimpact.flights.orbits import orbit_segment
 from singimpact.oscillator.model import Oscillator
@@ -97,9 +98,7 @@ def edge(osc: Oscillator, order: int, h: float, near: float, narrow: float) -> t
     low, high = near / 2, 2 * near
     if above(osc, order, h, low) or not above(osc, order, h, high):
         raise ArithmeticError(f"gamma of {osc} over tau = {-h} is not between {low} and {high}")
-    while high - low > narrow * high:
-        middle = (low + high) / 2
-        low, high = (low, middle) if above(osc, order, h, middle) else (middle, high)
+    low, high = halved(lambda v: not above(osc, order, h, v), low, high, narrow)
     return (low + high) / 2, (high - low) / (high + low)
 
 

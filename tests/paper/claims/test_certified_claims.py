@@ -6,9 +6,9 @@ import subprocess
 import sys
 
 import pytest
+from false_certificates import accepts
 from tampering import bumped, changed, leaves
 
-from singimpact.algebra import accepts
 from singimpact.paper import CLAIMS, MODULO, run, select
 
 SERIES = ("composed", "motion", "flight")
@@ -308,7 +308,7 @@ MUTANTS = {
 }  # fmt: skip
 
 PROGRAM = """
-import importlib.machinery, sys
+import importlib.machinery, json, sys
 file, old, new, *names = sys.argv[1:]
 loader = importlib.machinery.SourceFileLoader
 read, stats = loader.get_data, loader.path_stats
@@ -328,12 +328,16 @@ def path_stats(self, path):
 
 loader.get_data, loader.path_stats, sys.dont_write_bytecode = get_data, path_stats, True
 from singimpact.algebra.gathering import collected
+from singimpact.certificates import check_certificate
 from singimpact.paper.claims import CLAIMS
 
 def holds(name):
     claim = CLAIMS[name]
-    with collected():
-        return claim.verify((claim.corrected() if claim.corrected else claim.printed).value).holds
+    with collected() as certificates:
+        found = claim.verify((claim.corrected() if claim.corrected else claim.printed).value).holds
+    for certificate in certificates:
+        check_certificate(json.loads(json.dumps(certificate)))
+    return found
 
 for name in names:
     try:

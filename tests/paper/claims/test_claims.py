@@ -8,9 +8,10 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
+from false_certificates import definite
 
 from singimpact import cache
-from singimpact.algebra import gathering
+from singimpact.algebra import left_behind
 from singimpact.inputs import InputError
 from singimpact.paper import (
     CLAIMS,
@@ -347,6 +348,11 @@ def test_a_kept_verdict_with_a_damaged_certificate_is_decided_again(tmp_path, mo
     assert run(select(["s4b-M"]), cached=True)[0].kind == "proved"
 
 
-def test_a_proof_without_an_accepted_certificate_is_none(monkeypatch):
-    monkeypatch.setattr(gathering, "accepts", lambda _: False)
-    assert run([CLAIMS["s4b-M"]])[0].kind == "error"
+def test_a_proof_whose_certificate_is_refused_is_none():
+    def forged(_value):
+        left_behind(definite(["1", "0", "-1"]))
+        return Check(True, "proved", "a saddle is said to have one sign")
+
+    verdict = run([replace(CLAIMS["s4b-M"], verify=forged)])[0]
+    assert verdict.kind == "error"
+    assert "the form has not one sign" in verdict.evidence

@@ -12,11 +12,12 @@ import sympy
 from emitted_module import module_of
 
 import singimpact as si
+from singimpact.codegen import module_source
 from singimpact.generated import chatter_terms, linear_chatter_terms
-from singimpact.theory import CURVED, MOVED, completion_module, curve_module
+from singimpact.theory import CURVED, MOVED, completion_module, curve_functions
 
 EPSILON = 2.0**-52
-curves = module_of(curve_module(), "emitted_curves")
+curves = module_of(module_source("Curves of the theory.", "a test", curve_functions()), "emitted_curves")
 NAMES = [*CURVED, *MOVED, "chatter_limit", "outline_tangency"]
 
 # name -> worst error in epsilons of the size of the sum (`scale` below), for lambda in [1e-9, 1 - 1e-9], jets of size

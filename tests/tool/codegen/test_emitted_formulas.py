@@ -10,11 +10,13 @@ import numpy as np
 import pytest
 from emitted_module import module_of
 
+from singimpact.codegen import module_source
 from singimpact.contact import NAMED_ORDERS
-from singimpact.theory import PLACES, generic_sheet, sheet_module
+from singimpact.theory import PLACES, generic_sheet, sheet_functions
 
 EPSILON = 2.0**-52
-sheets = module_of(sheet_module(), "emitted_sheets")
+ORDER = 6  # total degree: one digit of v_c per third of a decade in t
+sheets = module_of(module_source("Sheets.", "a test", sheet_functions(ORDER)), "emitted_sheets")
 FUNCTIONS = [f"{name}_{place}" for place in PLACES for name in ("v_c", "xdot_c")]
 
 # name -> worst error in epsilons of the sum of the moduli of the terms, over the domain drawn below; what was

@@ -7,7 +7,7 @@ import sympy
 from singimpact.algebra.certificates import positive_on
 from singimpact.branches.border import BorderOrbit, border_orbits
 from singimpact.oscillator.model import Oscillator
-from singimpact.paper.claims.claim import Check, Statement, claim_beyond
+from singimpact.paper.claims.claim import Check, Encoding
 from singimpact.paper.claims.sections.section4a_blowup import HALF, THREE_HALVES
 from singimpact.paper.claims.sections.section4a_multipliers import ray_m3
 from singimpact.paper.claims.verifiers import every, identity, is_zero
@@ -127,14 +127,9 @@ def _measured(stated: tuple[int, int, int, int]) -> Check:
     return every(checks, "supported", witness=lambda: worst)
 
 
-CLAIMS = (
-    claim_beyond(
-        "b:cascade-launch",
-        "a launch next to a release differs from it only by v - a' sigma^2/2, of second order",
-        Statement(
-            r"(\tau_*+h\sigma,\,h^2v):\quad x(\tau_*)-c=O(h^3),\quad\dot x(\tau_*)=h^2(v-\tfrac12a'\sigma^2)+O(h^3)",
-            (3, v - a_symbol(1) * sigma**2 / 2),
-        ),
+CLAIMS = {
+    "b:cascade-launch": Encoding(
+        (3, v - a_symbol(1) * sigma**2 / 2),
         _forgets,
         (
             (2, v - a_symbol(1) * sigma**2 / 2),
@@ -142,16 +137,9 @@ CLAIMS = (
             (3, v - a_symbol(1) * sigma**2 / 6),
             (4, v),
         ),
-        ("e:yeq",),
     ),
-    claim_beyond(
-        "b:cascade-contraction",
-        "lambda^2 mu < 1 for every r in (0, 1): what a window returns is small beside its width",
-        Statement(
-            r"\lambda^2\mu=\frac{\lambda(2+\lambda)^2}{(1+2\lambda)^2}"
-            r"=1-\frac{1-\lambda^3}{(1+2\lambda)^2}<1\ \text{for}\ 0<r<1",
-            (2, _FACTOR, "below"),
-        ),
+    "b:cascade-contraction": Encoding(
+        (2, _FACTOR, "below"),
         _contracts,
         (
             (2, _FACTOR, "above"),
@@ -160,25 +148,7 @@ CLAIMS = (
             (2, lam * (2 + lam) / (1 + 2 * lam), "below"),
             (2, 1 - (1 - lam**2) / (1 + 2 * lam) ** 2, "below"),
         ),
-        ("s4-saddle-m3", "s4-Nr-3", "s4-m3"),
     ),
-    claim_beyond(
-        "b:cascade-contraction-r",
-        "lambda^2 mu = r^2/lambda^3",
-        Statement(r"\lambda^2\mu=r^2/\lambda^3", (2, 3)),
-        _in_r,
-        ((2, 2), (1, 3), (2, 5)),
-        ("s4-Nr-3", "e:meq"),
-    ),
-    claim_beyond(
-        "b:cascade",
-        "beside a border orbit edges shrink by mu, and multipliers of the windows' attractors by lambda^2 mu",
-        Statement(
-            r"\frac{d_N}{d_{N+1}}\to\mu,\qquad\frac{\nu_{N+1}}{\nu_N}\to\lambda^2\mu",
-            (0, 1, 2, 1),
-        ),
-        _measured,
-        ((0, 1, 1, 1), (1, 1, 2, 1), (0, 2, 2, 1), (0, 1, 2, 2)),
-        ("b:cascade-launch", "b:cascade-contraction"),
-    ),
-)
+    "b:cascade-contraction-r": Encoding((2, 3), _in_r, ((2, 2), (1, 3), (2, 5))),
+    "b:cascade": Encoding((0, 1, 2, 1), _measured, ((0, 1, 1, 1), (1, 1, 2, 1), (0, 2, 2, 1), (0, 1, 2, 2))),
+}

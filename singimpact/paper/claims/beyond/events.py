@@ -10,7 +10,7 @@ from typing import Any
 import sympy
 
 from singimpact.algebra.derivations import At, substitution
-from singimpact.paper.claims.claim import Check, Statement, claim_beyond
+from singimpact.paper.claims.claim import Check, Encoding
 from singimpact.paper.claims.verifiers import every, identity
 
 tau, v, t, c, k = sympy.symbols("tau v t c k")
@@ -105,41 +105,18 @@ def _with(index: int, other: sympy.Expr) -> tuple[Any, ...]:
     return (*FRONT[:index], other, *FRONT[index + 1 :])
 
 
-CLAIMS = (
-    claim_beyond(
-        "b:events-front",
-        "P and Pi_0 are the preimage of one front of flights under a map that is folded along v = 0, with a cusp at "
-        "tangency points",
-        Statement(
-            r"\partial_sR=-a(s)\,Y,\ \det D\psi=-v,\ \ker D\psi|_{v=0}=(1,a),\ "
-            r"\partial_{(1,a)}\det=-a,\ \partial^2_{(1,a)}\det=-a'\text{ on }v=0",
-            FRONT,
-        ),
-        _front,
-        (_with(1, a), _with(2, v), _with(4, -a), _with(5, a), _with(6, sympy.Integer(0))),
-        ("e:acc",),
+CLAIMS = {
+    "b:events-front": Encoding(
+        FRONT, _front, (_with(1, a), _with(2, v), _with(4, -a), _with(5, a), _with(6, sympy.Integer(0)))
     ),
-    claim_beyond(
-        "b:events-critical",
-        "along flights with two rests dc = 0 exactly where a(s_1) a(s_2) Y(s_2, s_1) = 0: tangencies and tacnodes",
-        Statement(r"E(s_1,s_2)=0:\ dc=0\iff a(s_1)\,a(s_2)\,Y(s_2,s_1)=0", -a_1 * a_2 * Y),
-        _critical,
-        (-a_1 * Y, -a_1 * a_2 * Y_d, a_1 * a_2 * Y, -a_1 * a_2),
-        ("b:events-front",),
-    ),
-    claim_beyond(
-        "b:events-eliminated",
-        "two rests of a linear oscillator: the clearance is eliminated, one function of the two times is left",
-        Statement(
-            r"F=A_1kS+A_2(C-1)=0,\ c=\frac{A_2kS-A_1(C-1)}{(C-1)^2+k^2S^2}",
-            (A_1 * k * S + A_2 * (C - 1), (A_2 * k * S - A_1 * (C - 1)) / ((C - 1) ** 2 + (k * S) ** 2)),
-        ),
+    "b:events-critical": Encoding(-a_1 * a_2 * Y, _critical, (-a_1 * Y, -a_1 * a_2 * Y_d, a_1 * a_2 * Y, -a_1 * a_2)),
+    "b:events-eliminated": Encoding(
+        (A_1 * k * S + A_2 * (C - 1), (A_2 * k * S - A_1 * (C - 1)) / ((C - 1) ** 2 + (k * S) ** 2)),
         _eliminated,
         (
             (A_1 * k * S - A_2 * (C - 1), (A_2 * k * S - A_1 * (C - 1)) / ((C - 1) ** 2 + (k * S) ** 2)),
             (A_1 * k * S + A_2 * (C - 1), (A_2 * k * S + A_1 * (C - 1)) / ((C - 1) ** 2 + (k * S) ** 2)),
             (A_1 * S + A_2 * (C - 1), (A_2 * k * S - A_1 * (C - 1)) / ((C - 1) ** 2 + (k * S) ** 2)),
         ),
-        ("b:events-front",),
     ),
-)
+}

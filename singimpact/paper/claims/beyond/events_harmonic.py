@@ -16,7 +16,7 @@ from singimpact.algebra.parsing import parse
 from singimpact.algebra.precision import balls_at, digits_at
 from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.paper.claims.beyond.events import composed
-from singimpact.paper.claims.claim import Check, Statement, claim_beyond
+from singimpact.paper.claims.claim import Check, Encoding
 from singimpact.paper.claims.verifiers import every
 from singimpact.surface.outline_transitions import transitions
 from singimpact.surface.swan_families import Transition
@@ -310,43 +310,23 @@ def _kinds(stated: frozenset[str]) -> Check:
     return every([(f"{len(met)} models: {told}", kinds == stated)], "supported")
 
 
-CLAIMS = (
-    claim_beyond(
-        "b:events-families",
-        "x'' + x = cos(omega t): flights with two rests are symmetric, or skew and not seen, or at rest once a period",
-        Statement(
-            r"\sin\omega m=0:\ c=\pm\kappa(\cos\omega h-\omega\sin\omega h\cot h);\quad"
-            r"\tan\omega h=\omega\tan h:\ c=\cos\omega m\cos\omega h,\ a(s_1)=-a(s_2)",
-            (g * PHI, Cm * Cw, sympy.Integer(0)),
-        ),
+CLAIMS = {
+    "b:events-families": Encoding(
+        (g * PHI, Cm * Cw, sympy.Integer(0)),
         _two_families,
         (
             (g * kappa * (Cw + omega * Sw * Ch / Sh), Cm * Cw, sympy.Integer(0)),
             (g * PHI, Sm * Cw, sympy.Integer(0)),
             (g * PHI, Cm * Cw, 2 * Cm * Cw),
         ),
-        ("b:events-eliminated",),
     ),
-    claim_beyond(
-        "b:events-values",
-        "x'' + x = cos(omega t): tacnodes at c = +-kappa cos(k omega pi/2), k odd; flights from tangency to tangency",
-        Statement(
-            r"\frac{dc}{dh}=a\cot h;\ d=k\pi:\ c=\pm\kappa\cos\frac{k\omega\pi}{2};\quad"
-            r"\tan\omega h=\omega\tan h:\ c=\pm\cos\omega h",
-            (Ch / Sh, kappa * Cw, Cw),
-        ),
+    "b:events-values": Encoding(
+        (Ch / Sh, kappa * Cw, Cw),
         _critical_values,
         ((Sh / Ch, kappa * Cw, Cw), (Ch / Sh, Cw, Cw), (Ch / Sh, kappa * Cw, -Cw), (-Ch / Sh, kappa * Cw, Cw)),
-        ("b:events-families", "b:events-critical"),
     ),
-    claim_beyond(
-        "b:events-two",
-        "x'' + x = cos 2t has transitions at c = 1, 1/3, -1/3, -1 alone, of which 1/3 is not seen",
-        Statement(
-            r"\omega=2:\ c=\pm\tfrac13(2+\cos d),\ x-c=\mp\tfrac23(\cos(t-m)-\cos h)^2,\ "
-            r"c\in\{1,\tfrac13,-\tfrac13,-1\}",
-            TWO,
-        ),
+    "b:events-two": Encoding(
+        TWO,
         _exactly_two,
         (
             (g * (1 + u**2) / 3, *TWO[1:]),
@@ -354,17 +334,9 @@ CLAIMS = (
             (*TWO[:2], 4 * g * (1 - u**2) / 3, TWO[3]),
             (*TWO[:3], {1: sympy.Rational(1, 3), -1: sympy.Rational(-2, 3)}),
         ),
-        ("b:events-families", "b:events-critical"),
     ),
-    claim_beyond(
-        "b:events-first",
-        "x'' + x = cos(omega t), omega > 1: the swan of c = 1 stays uncut down to c_1, a tacnode for omega < 3, "
-        "beyond it a flight from tangency to tangency",
-        Statement(
-            r"c_1=\frac{\cos(\omega\pi/2)}{\omega^2-1},\ 1<\omega<3;\quad"
-            r"c_1=-\cos\omega h_1,\ \tan\omega h_1=\omega\tan h_1,\ \omega>3",
-            (K / (omega**2 - 1), -Cw, 3),
-        ),
+    "b:events-first": Encoding(
+        (K / (omega**2 - 1), -Cw, 3),
         _first,
         (
             (K / (omega**2 + 1), -Cw, 3),
@@ -373,21 +345,13 @@ CLAIMS = (
             (K / (omega**2 - 1), -Cw, 5),
             (K / (omega**2 - 1), -Cw, 2),
         ),
-        ("b:events-values", "b:events-critical"),
     ),
-    claim_beyond(
-        "b:events-met",
-        "as c moves on from a negative swan of a linear oscillator, its arc first meets a tacnode, a tangency or a "
-        "periodic graze, and never a triple point",
-        Statement(
-            r"\text{first visible: tacnode, tangency first, tangency last, tangency to tangency, periodic graze}",
-            frozenset({"tacnode", "tangency first", "tangency last", "tangency to tangency", "periodic graze"}),
-        ),
+    "b:events-met": Encoding(
+        frozenset({"tacnode", "tangency first", "tangency last", "tangency to tangency", "periodic graze"}),
         _kinds,
         (
             frozenset({"tacnode", "tangency first", "tangency last", "periodic graze"}),
             frozenset({"tacnode", "tangency first", "tangency last", "tangency to tangency", "triple point"}),
         ),
-        ("b:events-critical",),
     ),
-)
+}

@@ -10,7 +10,7 @@ import sympy
 
 from singimpact.algebra.certificates import positive_in, positive_on
 from singimpact.algebra.derivations import At, substitution
-from singimpact.paper.claims.claim import Check, Statement, claim_beyond
+from singimpact.paper.claims.claim import Check, Encoding
 from singimpact.paper.claims.verifiers import every, is_zero, same
 from singimpact.theory.multipliers import DG_on_ray, P, Q, lambda_, mu_of_lambda, r_of_lambda
 
@@ -237,53 +237,11 @@ def _sides(stated: tuple[int, int]) -> Check:
     )
 
 
-CLAIMS = (
-    claim_beyond(
-        "b:order-ray",
-        "at a contact point of every order j >= 1 and for every r in (0, 1) exactly one ray is invariant, with l in "
-        "(0, 1)",
-        Statement(r"\#\{l>0:l^{j+1}P_j(l)=r\,Q_j(l)\}=1,\ j\ge1,\ 0<r<1", 1),
-        _ray,
-        (0, 2),
-    ),
-    claim_beyond(
-        "b:order-saddle",
-        "and it is a saddle: its multipliers are l < 1 and mu > 1/l",
-        Statement(r"\mu_j=\frac{1}{l}\Bigl(\frac{P_j}{Q_j}\Bigr)^2>l^{-1},\ j\ge1", 1),
-        _saddle,
-        (2, 3),
-        ("b:order-ray",),
-    ),
-    claim_beyond(
-        "b:order-expansion",
-        "mu < 1/r, for every j",
-        Statement(r"r\mu_j=l^j(P_j/Q_j)^3<1,\ j\ge1", 1),
-        _smaller,
-        (0, -1),
-        ("b:order-ray",),
-    ),
-    claim_beyond(
-        "b:order-exponents",
-        "in (tau, v) both exponents of G along gamma are negative for every j: only v/|sigma|^(j+1) is repelled",
-        Statement(r"l^j(P_j/Q_j)^2<1,\ j\ge1", 2),
-        _exponents,
-        (3, 1),
-        ("b:order-ray",),
-    ),
-    claim_beyond(
-        "b:order-parity",
-        f"the other real rays: two with l < 0 for odd j, none for even j, for j = 1..{TURNED}",
-        Statement(rf"\#\{{l<0\}}=2\ (j\ \text{{odd}}),\ 0\ (j\ \text{{even}}),\ 1\le j\le{TURNED}", (2, 0)),
-        _parity,
-        ((0, 2), (1, 1)),
-        ("b:order-ray",),
-    ),
-    claim_beyond(
-        "b:order-sides",
-        "gamma lies on sigma < 0 alone, and only where the wall acceleration is negative there",
-        Statement(r"\gamma\subset\{\sigma<0\},\ a_j\sigma^j<0", (-1, -1)),
-        _sides,
-        ((1, -1), (-1, 1)),
-        ("b:order-ray",),
-    ),
-)
+CLAIMS = {
+    "b:order-ray": Encoding(1, _ray, (0, 2)),
+    "b:order-saddle": Encoding(1, _saddle, (2, 3)),
+    "b:order-expansion": Encoding(1, _smaller, (0, -1)),
+    "b:order-exponents": Encoding(2, _exponents, (3, 1)),
+    "b:order-parity": Encoding((2, 0), _parity, ((0, 2), (1, 1))),
+    "b:order-sides": Encoding((-1, -1), _sides, ((1, -1), (-1, 1))),
+}

@@ -5,7 +5,7 @@ from typing import Any
 
 import sympy
 
-from singimpact.paper.claims.claim import Check, Statement, claim_beyond
+from singimpact.paper.claims.claim import Check, Encoding
 from singimpact.paper.claims.sections.section3 import NORMALLY_HYPERBOLIC
 from singimpact.paper.claims.verifiers import Finding, every, is_zero, measured_on, same, sample
 from singimpact.paper.routes import first_order as route
@@ -95,11 +95,9 @@ def _orders(stated: tuple[int, int, sympy.Expr]) -> Check:
 ALPHA = (2 * second + first * damping) / (2 * (j + 3) * first)
 CHI = damping + 2 * A3 / (3 * A2)
 
-CLAIMS = (
-    claim_beyond(
-        "b:first-order",
-        "the first correction to the blown-up map is removed by a change of time s + alpha s^2, at every j >= 1",
-        Statement(r"\alpha=\frac{2a_{j+1}+a_jf_v}{2(j+3)a_j}", ALPHA),
+CLAIMS = {
+    "b:first-order": Encoding(
+        ALPHA,
         _removed,
         (
             ALPHA * (j + 3) / (j + 2),
@@ -108,12 +106,9 @@ CLAIMS = (
             ALPHA.subs(j, 2),
             sympy.Integer(0),
         ),
-        ("e:acc", "b:gauge-nonlinear"),
     ),
-    claim_beyond(
-        "b:first-order-foot",
-        "an unfolded swan tends to the universal one at first order in H, with a term that is known for every r",
-        Statement(r"X_H=X-\tfrac{1}{10}\Bigl(f_v+\frac{2a'''}{3a''}\Bigr)(X^2-1)H+O(H^2)", -CHI * (X**2 - 1) / 10),
+    "b:first-order-foot": Encoding(
+        -CHI * (X**2 - 1) / 10,
         _shifted,
         (
             CHI * (X**2 - 1) / 10,
@@ -122,14 +117,10 @@ CLAIMS = (
             -(damping + A3 / (3 * A2)) * (X**2 - 1) / 10,
             -(damping - 2 * A3 / (3 * A2)) * (X**2 - 1) / 10,
         ),
-        ("s6-scaling", "s6n-X"),
     ),
-    claim_beyond(
-        "b:first-order-measured",
-        "five oscillators, three values of r: the error is of order 1, and of order 2 without that term",
-        Statement(r"X_H-X\sim H,\quad X_H-X+\tfrac{1}{10}\chi(X^2-1)H\sim H^2", (1, 2, -(X**2 - 1) / 10)),
+    "b:first-order-measured": Encoding(
+        (1, 2, -(X**2 - 1) / 10),
         _orders,
         ((2, 2, -(X**2 - 1) / 10), (1, 2, (X**2 - 1) / 10), (1, 2, -(X**2 - 1) / 9), (1, 1, -(X**2 - 1) / 10)),
-        ("b:first-order-foot",),
     ),
-)
+}

@@ -9,7 +9,7 @@ import sympy
 
 from singimpact.algebra.certificates import positive_in
 from singimpact.algebra.derivations import At, substitution
-from singimpact.paper.claims.claim import Check, Statement, claim_beyond
+from singimpact.paper.claims.claim import Check, Encoding
 from singimpact.paper.claims.verifiers import every, is_zero, same, sample
 from singimpact.paper.routes import unfolding as model
 from singimpact.paper.routes.unfolding import kappa, sigma, t
@@ -184,26 +184,10 @@ def _rounds(ends: tuple[Fraction, ...], text: str) -> bool:
 SEVENTHS = Fraction(3, 7)
 FORMULA = (14 * w / (3 * 12 ** sympy.Rational(2, 3))) ** sympy.Rational(3, 7)
 
-CLAIMS = (
-    claim_beyond(
-        "b:foot-monotone",
-        "in the universal negative swan the foot X rises with r, and with the velocity at A",
-        Statement(
-            r"\frac{\partial t_1}{\partial\sigma},\ \frac{\partial t_1}{\partial t},\ "
-            r"\frac{\partial t_1}{\partial r}>0,\quad\frac{dX}{dr}>0",
-            (1, 1, 1),
-        ),
-        _rises,
-        ((-1, 1, 1), (1, -1, 1), (1, 1, -1)),
-        ("s6n-X",),
-    ),
-    claim_beyond(
-        "b:foot",
-        "X = 3 (1 - r)^(-3/7) within 2 % for all r up to 19/20",
-        Statement(
-            r"\bigl|X(r)(1-r)^{3/7}-3\bigr|<3\cdot\tfrac1{50},\ 0\le r\le\tfrac{19}{20}",
-            (3, SEVENTHS, Fraction(1, 50), Fraction(0), Fraction(19, 20)),
-        ),
+CLAIMS = {
+    "b:foot-monotone": Encoding((1, 1, 1), _rises, ((-1, 1, 1), (1, -1, 1), (1, 1, -1))),
+    "b:foot": Encoding(
+        (3, SEVENTHS, Fraction(1, 50), Fraction(0), Fraction(19, 20)),
         _within,
         (
             (3, SEVENTHS, Fraction(1, 100), Fraction(0), Fraction(19, 20)),
@@ -211,16 +195,9 @@ CLAIMS = (
             (3, Fraction(2, 5), Fraction(1, 50), Fraction(0), Fraction(19, 20)),
             (Fraction(29, 10), SEVENTHS, Fraction(1, 50), Fraction(0), Fraction(19, 20)),
         ),
-        ("b:foot-monotone",),
     ),
-    claim_beyond(
-        "b:foot-limit",
-        "as r -> 1 X (1-r)^(3/7) tends to 2.94103, which the adiabatic invariant of the elastic ball from A gives",
-        Statement(
-            r"X(1-r)^{3/7}\to\Bigl(\frac{14\,u}{3\cdot12^{2/3}}\Bigr)^{3/7}=2.9410294,\quad "
-            r"u=\lim\frac{v}{|a|^{1/3}}=13.919146\ (r=1)",
-            (FORMULA, "13.919146", "2.9410294"),
-        ),
+    "b:foot-limit": Encoding(
+        (FORMULA, "13.919146", "2.9410294"),
         _limit,
         (
             (FORMULA, "13.919147", "2.9410294"),
@@ -228,6 +205,5 @@ CLAIMS = (
             (FORMULA.subs(w, w / 2), "13.919146", "2.9410294"),
             (FORMULA ** sympy.Rational(7, 6), "13.919146", "2.9410294"),
         ),
-        ("b:foot-monotone",),
     ),
-)
+}

@@ -13,7 +13,7 @@ from singimpact.algebra.numbers import exact
 from singimpact.dynamics.gamma_proof.proof import CertifiedGamma, certified_gamma
 from singimpact.inputs import InputError
 from singimpact.oscillator.model import Oscillator
-from singimpact.paper.claims.claim import Check, Statement, claim_beyond
+from singimpact.paper.claims.claim import Check, Encoding
 from singimpact.paper.claims.verifiers import every
 
 BEFORE = 2  # a phase with a_c < 0 between the zero before tau_* and tau_*, at c = 0.3 and at c = 1
@@ -110,16 +110,9 @@ SWAN = Stated("1", "1/2", 2, "1/4", ("0.0031225", "1e-5"), "1.8", "0.00317")
 DUFFING = Stated("3/10", "1/2", 1, "1/4", ("0.01857755", "1e-4"), "1.8", "4", "x + x**3/5 + xdot/10")
 INTERVAL = ("3/10", ("0.48", "0.52"), "1/4", "0.5")
 
-CLAIMS = (
-    claim_beyond(
-        "b:gamma-tangency",
-        "x'' + x = cos 2t, c = 3/10, r = 1/2: gamma exists for S <= 1/4, alone, and decides the fate of every launch",
-        Statement(
-            r"\ddot x+x=\cos2t,\ c=\tfrac3{10},\ r=\tfrac12,\ \tan(\tau_*-\tau)\le\tfrac14:\quad"
-            r"\gamma\ \text{is one Lipschitz graph; below it chatter completes before}\ \tau_*\text{, above it contact "
-            r"is lost}",
-            TANGENCY,
-        ),
+CLAIMS = {
+    "b:gamma-tangency": Encoding(
+        TANGENCY,
         _certified,
         (
             TANGENCY._replace(reach="9/10"),
@@ -129,17 +122,9 @@ CLAIMS = (
             TANGENCY._replace(order=2),
             TANGENCY._replace(after="1.27"),
         ),
-        ("b:gauge", "b:order-ray"),
     ),
-    claim_beyond(
-        "b:gamma-swan",
-        "x'' + x = cos 2t at the swan c = 1, r = 1/2: the same for S <= 1/4; above gamma chatter completes after tau_*",
-        Statement(
-            r"\ddot x+x=\cos2t,\ c=1,\ r=\tfrac12,\ \tan(\tau_*-\tau)\le\tfrac14:\quad"
-            r"\gamma\ \text{is one Lipschitz graph; below it chatter completes before}\ \tau_*\text{, above it, for}\ "
-            r"\tfrac{dy}{ds}\le0.00317\text{, after}\ \tau_*",
-            SWAN,
-        ),
+    "b:gamma-swan": Encoding(
+        SWAN,
         _certified,
         (
             SWAN._replace(reach="9/10"),
@@ -147,28 +132,12 @@ CLAIMS = (
             SWAN._replace(clearance="9/10"),
             SWAN._replace(after="0.01"),
         ),
-        ("b:gauge", "b:order-ray"),
     ),
-    claim_beyond(
-        "b:gamma-interval",
-        "x'' + x = cos 2t, c = 3/10: the same for every r in [0.48, 0.52] at once",
-        Statement(
-            r"\forall r\in[0.48,0.52],\ S\le\tfrac14:\quad|\ell-L(S)|\le\tfrac12S^6\ \text{on}\ \gamma",
-            INTERVAL,
-        ),
-        _for_all,
-        (("3/10", ("0.48", "0.52"), "9/10", "0.5"), ("3/10", ("0.48", "0.52"), "1/4", "0.05")),
-        ("b:gamma-tangency",),
+    "b:gamma-interval": Encoding(
+        INTERVAL, _for_all, (("3/10", ("0.48", "0.52"), "9/10", "0.5"), ("3/10", ("0.48", "0.52"), "1/4", "0.05"))
     ),
-    claim_beyond(
-        "b:gamma-nonlinear",
-        "x'' + x + x^3/5 + x'/10 = cos 2t, c = 3/10, r = 1/2: the same for tau_* - tau <= 1/4 and every v <= 4",
-        Statement(
-            r"\ddot x+x+\tfrac15x^3+\tfrac1{10}\dot x=\cos2t,\ c=\tfrac3{10},\ r=\tfrac12,\ \tau_*-\tau\le\tfrac14,\ "
-            r"v\le4:\quad\gamma\ \text{is one Lipschitz graph; below it chatter completes before}\ \tau_*\text{, above "
-            r"it finitely many impacts come before}\ \tau_*",
-            DUFFING,
-        ),
+    "b:gamma-nonlinear": Encoding(
+        DUFFING,
         _certified,
         (
             DUFFING._replace(reach="9/10"),
@@ -177,6 +146,5 @@ CLAIMS = (
             DUFFING._replace(after="400"),
             DUFFING._replace(force="x + x**3/4 + xdot/10"),
         ),
-        ("e:yeq", "b:order-ray"),
     ),
-)
+}

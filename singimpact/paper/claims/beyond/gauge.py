@@ -15,7 +15,7 @@ from singimpact.algebra.derivations import At, substitution
 from singimpact.algebra.jets import Jet, JetSpace
 from singimpact.algebra.rings import Exact
 from singimpact.contact.contact import Contact
-from singimpact.paper.claims.claim import Check, Statement, claim_beyond
+from singimpact.paper.claims.claim import Check, Encoding
 from singimpact.paper.claims.verifiers import every, same
 from singimpact.theory.impact_sheet import generic_sheet, sheet
 
@@ -116,25 +116,7 @@ def _entry(stated: tuple[int, ...]) -> Check:
     )
 
 
-CLAIMS = (
-    claim_beyond(
-        "b:gauge",
-        "a linear impact oscillator is a ball under time-dependent gravity, exactly, for less than pi/omega_d",
-        Statement(
-            r"s=\frac{\tan\omega_dt}{\omega_d},\ y=\frac{(x-c)e^{\beta t}}{\cos\omega_dt}:\quad"
-            r"\frac{d^2y}{ds^2}=e^{\beta t}\cos^3(\omega_dt)\,a_c(t)",
-            (3, 1),
-        ),
-        _ball,
-        ((2, 1), (3, 0), (3, -1)),
-        ("e:acc",),
-    ),
-    claim_beyond(
-        "b:gauge-nonlinear",
-        "second derivatives of f enter v_c by j + 2 degrees above its leading part, j = 0, 1, 2",
-        Statement(r"\deg f_{20},f_{11},f_{02}\ \text{in}\ v_c:\ (j+1)+(j+2)", (2, 3, 4)),
-        _entry,
-        ((1, 2, 3), (2, 2, 2)),
-        ("e:acc",),
-    ),
-)
+CLAIMS = {
+    "b:gauge": Encoding((3, 1), _ball, ((2, 1), (3, 0), (3, -1))),
+    "b:gauge-nonlinear": Encoding((2, 3, 4), _entry, ((1, 2, 3), (2, 2, 2))),
+}

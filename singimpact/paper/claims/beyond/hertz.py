@@ -15,7 +15,7 @@ import sympy
 from singimpact.algebra.certificates import positive_in
 from singimpact.algebra.derivations import At, substitution
 from singimpact.paper.claims.beyond.every_order import CLOSED_P, CLOSED_Q, L, closed_forms, ell, j
-from singimpact.paper.claims.claim import Check, Statement, claim_beyond
+from singimpact.paper.claims.claim import Check, Encoding
 from singimpact.paper.claims.verifiers import Finding, every, measured_on, same, sample
 from singimpact.paper.trials.hertz_orbits import POWERS, STARTS, Measured, Start, measured
 
@@ -185,22 +185,10 @@ def _beside(curve: Measured, order: int, power: Fraction, law: tuple[float, floa
     return [(v / (w * h**n) - 1, v / h ** (order + 1)) for h, v in pairs]
 
 
-CLAIMS = (
-    claim_beyond(
-        "b:hertz-adiabatic",
-        "an elastic flight of x'' = s^j before s = 0 keeps v^3/|a_c| up to the third order of its length, for every j",
-        Statement(r"\frac{U^3}{|\sigma+t|^j}=\frac{v^3}{|\sigma|^j}\bigl(1+O(e^3)\bigr),\ e=t/|\sigma|,\ x''=s^j", 3),
-        _adiabatic,
-        (2, 4, 1),
-    ),
-    claim_beyond(
-        "b:hertz",
-        "where impacts lose C v^q of a low speed, 0 < q < 1, gamma is |sigma|^((j+1)/(1-q)) times a known constant",
-        Statement(
-            r"v^{1-q}\sim\frac{3(1-q)}{2(3+(2+q)j)}\,\frac{C\,|a_j|}{j!}\,|\sigma|^{j+1},\ "
-            r"\rho(-v)=v(1-Cv^q+\ldots),\ 0<q<1",
-            (EXPONENT, FACTOR),
-        ),
+CLAIMS = {
+    "b:hertz-adiabatic": Encoding(3, _adiabatic, (2, 4, 1)),
+    "b:hertz": Encoding(
+        (EXPONENT, FACTOR),
         _balanced,
         (
             (j + 1, FACTOR),
@@ -210,43 +198,12 @@ CLAIMS = (
             (EXPONENT, 3 / (2 * (3 + (2 + q) * j))),
             (EXPONENT, 3 * (1 - q) / (2 * (5 + q))),
         ),
-        ("b:hertz-adiabatic", "b:first-order"),
     ),
-    claim_beyond(
-        "b:hertz-sides",
-        "v/|sigma|^((j+1)/(1-q)) falls below that value and rises above it: distances grow like |sigma|^(-1-(2+q)j/3)",
-        Statement(r"\delta\propto|\sigma|^{-p},\ p=1+\tfrac13(2+q)j>1", REPELLED),
-        _repelled,
-        (REPELLED - 1, 1 + (2 - q) * j / 3, sympy.Integer(1), -REPELLED),
-        ("b:hertz",),
-    ),
-    claim_beyond(
-        "b:hertz-next",
-        "and its second term, where (j+1) q < 1 - q: there further powers of the speed and of sigma come later",
-        Statement(
-            r"\frac{v\,j!}{|a_j||\sigma|^{j+1}}=P+GP^2+O(P^3),\ P\propto|\sigma|^{(j+1)q/(1-q)},\ "
-            r"G=\frac{q(3+(2+q)j)(3+(1+2q)j)}{3(1-q)(3+2j+2jq-jq^2)},\ (j+1)q<1-q",
-            SECOND,
-        ),
-        _second,
-        (sympy.Integer(0), -SECOND, SECOND / q, 2 * SECOND, SECOND.subs(j, 1)),
-        ("b:hertz",),
-    ),
-    claim_beyond(
-        "b:hertz-chatter",
-        "under a constant a_c < 0 the chatter left takes a time proportional to v^(1-q): it ends although r = 1",
-        Statement(r"\tau_\infty-\tau\sim\frac{2}{1-q}\,\frac{v^{1-q}}{C\,|a_c|}", 2 / (1 - q)),
-        _left,
-        (sympy.Integer(2), 2 / q, 1 / (1 - q)),
-        ("b:hertz",),
-    ),
-    claim_beyond(
-        "b:hertz-measured",
-        "gamma of four oscillators, j = 1 and 2, q = 1/10, 1/5, 3/10, 1/2: both terms on true orbits",
-        Statement(
-            r"v=w|\sigma|^{(j+1)/(1-q)}\bigl(1+GP\bigr),\ w^{1-q}=\frac{3(1-q)}{2(3+(2+q)j)}\,\frac{C\,|a_j|}{j!}",
-            (EXPONENT, FACTOR, SECOND),
-        ),
+    "b:hertz-sides": Encoding(REPELLED, _repelled, (REPELLED - 1, 1 + (2 - q) * j / 3, sympy.Integer(1), -REPELLED)),
+    "b:hertz-next": Encoding(SECOND, _second, (sympy.Integer(0), -SECOND, SECOND / q, 2 * SECOND, SECOND.subs(j, 1))),
+    "b:hertz-chatter": Encoding(2 / (1 - q), _left, (sympy.Integer(2), 2 / q, 1 / (1 - q))),
+    "b:hertz-measured": Encoding(
+        (EXPONENT, FACTOR, SECOND),
         _found,
         (
             (j + 1, FACTOR, SECOND),
@@ -255,6 +212,5 @@ CLAIMS = (
             (EXPONENT, FACTOR, sympy.Integer(0)),
             (EXPONENT, FACTOR, 2 * SECOND),
         ),
-        ("b:hertz", "b:hertz-next"),
     ),
-)
+}

@@ -3,7 +3,7 @@
 import sympy
 
 from singimpact.paper.claims.beyond.every_order import j, rising
-from singimpact.paper.claims.claim import Check, Statement, claim_beyond
+from singimpact.paper.claims.claim import Check, Encoding
 from singimpact.paper.claims.verifiers import Finding, every, measured_on, same
 from singimpact.paper.trials.orbits_beside_gamma import RATES, STARTS, Start, beside
 
@@ -69,33 +69,12 @@ def _counts(stated: int) -> Check:
     return measured_on(STARTS, RATES, count, lambda start, words: f"{start.name}: more impacts, {words}")
 
 
-CLAIMS = (
-    claim_beyond(
-        "b:holder-bounds",
-        "the exponent ln(1/lambda)/ln mu lies between 3/(3+2j) and 1, for every contact order j and every r in (0, 1)",
-        Statement(r"\frac{3}{3+2j}<\alpha=\frac{\ln(1/\lambda)}{\ln\mu}<1,\ j\ge1", (3, 3, 2)),
-        _between,
-        ((3, 3, 1), (3, 2, 2), (4, 3, 2), (1, 2, 0)),
-        ("b:order-ray", "b:order-saddle", "b:order-expansion"),
-    ),
-    claim_beyond(
-        "b:holder",
-        "below gamma at the relative distance delta chatter ends C delta^alpha before tau_*: six oscillators, j = 1, 2",
-        Statement(
-            r"\tau_*-\tau_\infty=\delta^\alpha\Bigl(C\bigl(\tfrac{\ln\delta}{\ln\mu}\bigr)+o(1)\Bigr),\ "
-            r"C\ \text{of period}\ 1,\quad\alpha=\frac{\ln(1/\lambda)}{\ln\mu}",
-            EXPONENT,
-        ),
+CLAIMS = {
+    "b:holder-bounds": Encoding((3, 3, 2), _between, ((3, 3, 1), (3, 2, 2), (4, 3, 2), (1, 2, 0))),
+    "b:holder": Encoding(
+        EXPONENT,
         _slopes,
         (sympy.Rational(1, 2), 1 / EXPONENT, EXPONENT / 2, sympy.Integer(1), 3 * EXPONENT / (2 + EXPONENT)),
-        ("b:holder-bounds",),
     ),
-    claim_beyond(
-        "b:holder-count",
-        "above gamma contact is lost after ln(1/delta)/ln mu + O(1) impacts: one more for each factor mu",
-        Statement(r"N(\delta/\mu)=N(\delta)+1", 1),
-        _counts,
-        (0, 2),
-        ("b:order-saddle",),
-    ),
-)
+    "b:holder-count": Encoding(1, _counts, (0, 2)),
+}

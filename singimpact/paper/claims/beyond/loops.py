@@ -12,7 +12,7 @@ import sympy
 
 from singimpact.algebra.certificates import positive_in, positive_on
 from singimpact.algebra.derivations import At, motion, substitution
-from singimpact.paper.claims.claim import Check, Statement, claim_beyond
+from singimpact.paper.claims.claim import Check, Encoding
 from singimpact.paper.claims.verifiers import Finding, every, is_zero, measured_on, root_of_line, same
 from singimpact.paper.trials.loop_heights import (
     GENERATIONS,
@@ -162,15 +162,9 @@ def _law(stated: sympy.Expr) -> Check:
 HALF, TEAR = sympy.Rational(1, 2), sympy.Rational(3, 8)
 INNER = r * (1 + ell - 2 * ell**2) - 3 * ell**2
 
-CLAIMS = (
-    claim_beyond(
-        "b:loops-map",
-        "over A - h the heights of W^s(X), of its tears and of gamma tend to a'(A) h^2 w, w algebraic in r",
-        Statement(
-            r"W^s(X):\ w=\tfrac12\ \text{and}\ \tfrac16(1-l)(2+l),\ r(1+l-2l^2)=3l^2;\quad"
-            r"\delta:\ w=\tfrac38;\quad\text{and inverse images under}\ r(1+l-2l^2)=6wl^2",
-            (HALF, TEAR, INNER),
-        ),
+CLAIMS = {
+    "b:loops-map": Encoding(
+        (HALF, TEAR, INNER),
         _map,
         (
             (sympy.Rational(1, 3), TEAR, INNER),
@@ -179,12 +173,9 @@ CLAIMS = (
             (HALF, TEAR, r * (1 - ell - 2 * ell**2) - 3 * ell**2),
             (TEAR, HALF, INNER),
         ),
-        ("b:order-ray", "s6n-X", "b:foot-monotone"),
     ),
-    claim_beyond(
-        "b:loops",
-        "eight crossings of W^s(X) on three models, three values of r: the heights differ from these by O(h)",
-        Statement(r"v=a'(A)\,h^2\,(w_n+O(h)),\ n\le4", (HALF, INNER)),
+    "b:loops": Encoding(
+        (HALF, INNER),
         _crossings,
         (
             (TEAR, INNER),
@@ -192,18 +183,6 @@ CLAIMS = (
             (HALF + sympy.Rational(1, 1000), INNER),
             (HALF, r * (1 + ell - 2 * ell**2) - 4 * ell**2),
         ),
-        ("b:loops-map",),
     ),
-    claim_beyond(
-        "b:loops-law",
-        "feet above gamma at the relative distance delta oscillate about X with an amplitude like delta^(2 alpha)",
-        Statement(
-            r"K-X=\delta^{2\alpha}\,\Psi(\ln\delta/\ln\mu)\,(1+o(1)),\ \Psi\ \text{of period}\ 1:\quad"
-            r"\frac{(K-X)(\delta/\mu)}{(K-X)(\delta)}\to\lambda^2",
-            lam**2,
-        ),
-        _law,
-        (lam, lam**3, 1 / mu, lam / mu, 1 / mu**2),
-        ("b:loops-map", "b:holder-bounds"),
-    ),
-)
+    "b:loops-law": Encoding(lam**2, _law, (lam, lam**3, 1 / mu, lam / mu, 1 / mu**2)),
+}

@@ -6,7 +6,7 @@ import sympy
 
 from singimpact.algebra.certificates import positive_in
 from singimpact.algebra.derivations import At, substitution
-from singimpact.paper.claims.claim import Check, Statement, claim_beyond
+from singimpact.paper.claims.claim import Check, Encoding
 from singimpact.paper.claims.sections.section6_scaling import persisting
 from singimpact.paper.claims.verifiers import every, same
 from singimpact.paper.routes import unfolding as model
@@ -99,22 +99,10 @@ def _orbit(stated: tuple[float, float, float, float]) -> Check:
 FLIGHT = (s + 1) ** 3 * (3 - s)
 LAWS = sympy.Integer(4), sympy.Rational(8, 3), sympy.Rational(9, 8)
 
-CLAIMS = (
-    claim_beyond(
-        "b:onset-none",
-        "tau rises along every flight, so nothing recurrent is born within an unfolded swan",
-        Statement(r"G(\tau,v)=(\tau+t,\cdot),\ t>0", sigma),
-        _rises,
-        (-sigma, v, sigma - v, sigma + v),
-        ("e:acc",),
-    ),
-    claim_beyond(
-        "b:onset-hop",
-        "from A a negative swan throws the mass: it hits 4H later with (8/3)|a''| H^3 and rises by (9/8)|a''| H^4",
-        Statement(
-            r"x-c=\tfrac{|a''|}{24}(s+1)^3(3-s):\quad t=4H,\ |\dot x|=\tfrac83|a''|H^3,\ \max(x-c)=\tfrac98|a''|H^4",
-            (FLIGHT, *LAWS),
-        ),
+CLAIMS = {
+    "b:onset-none": Encoding(sigma, _rises, (-sigma, v, sigma - v, sigma + v)),
+    "b:onset-hop": Encoding(
+        (FLIGHT, *LAWS),
         _hop,
         (
             (FLIGHT, LAWS[0], sympy.Rational(4, 3), LAWS[2]),
@@ -122,18 +110,10 @@ CLAIMS = (
             ((s + 1) ** 2 * (3 - s), *LAWS),
             (FLIGHT, sympy.Integer(3), *LAWS[1:]),
         ),
-        ("s6-scaling", "s6n-AB"),
     ),
-    claim_beyond(
-        "b:onset",
-        "where a_c < 0 elsewhere one orbit is born, superstable: a hop at A, chatter to A + (1 + X)H, rest",
-        Statement(
-            r"\frac{t_1}{H}\to4,\ \frac{|\dot x_1|}{|a''|H^3}\to\tfrac83,\ \frac{\max(x-c)}{|a''|H^4}\to\tfrac98,\ "
-            r"\frac{\tau_\infty-A}{H}\to1+X(r)",
-            (4.0, 8 / 3, 9 / 8, 1.0),
-        ),
+    "b:onset": Encoding(
+        (4.0, 8 / 3, 9 / 8, 1.0),
         _orbit,
         ((3.9, 8 / 3, 9 / 8, 1.0), (4.0, 4 / 3, 9 / 8, 1.0), (4.0, 8 / 3, sqrt(9 / 8), 1.0), (4.0, 8 / 3, 9 / 8, 0.0)),
-        ("b:onset-hop", "b:onset-none", "s6n-X"),
     ),
-)
+}

@@ -3,7 +3,7 @@
 from typing import Any
 
 from singimpact.algebra.certificates import positive_on
-from singimpact.paper.claims.claim import Check, Statement, claim_beyond
+from singimpact.paper.claims.claim import Check, Encoding
 from singimpact.paper.claims.sections.section4b import SLACK
 from singimpact.paper.claims.verifiers import every, same
 from singimpact.paper.routes.implicit import r
@@ -23,13 +23,10 @@ def _below_one(stated: tuple[Any, Any]) -> Check:
     )
 
 
-CLAIMS = (
-    claim_beyond(
-        "b:ratio-bound",
-        "r (4 - r) < 2 + r for 0 < r < 1, so q~/p~ < M < 1 follows from the corrected bounds of section 4(b)",
-        Statement(r"r(4-r)<2+r,\ 0<r<1", (r * (4 - r), 2 + r)),
+CLAIMS = {
+    "b:ratio-bound": Encoding(
+        (r * (4 - r), 2 + r),
         _below_one,
         ((r * (5 - r), 2 + r), (r * (1 + 2 * r), 2 + r), (2 * r * (4 - r), 2 * (2 + r) - 3)),
-        ("s4b-p-bound", "s4b-q-bound"),
     ),
-)
+}

@@ -1,26 +1,13 @@
-"""The claims in the paper's order, one file a section; `SECTIONS` is file -> its claims, imported when called.
+"""The claims in the paper's order, a pair of files a section; `SECTIONS` is file -> the names of its Python file.
 
-Not here: how they are run (`claims.engine`).  A statement is encoded as printed; mutants stand beside it.
+`SECTION.py` has the statements as printed in the form that verifiers take, mutants beside them, and `SECTION.toml`
+their words.  Not here: how they are run (`claims.engine`).
 """
 
-from collections.abc import Callable
-from dataclasses import replace
-from functools import partial
-
 from singimpact.handed_on import names_of
-from singimpact.paper.claims.claim import Claim
-
-
-def _claims(file: str) -> tuple[Claim, ...]:
-    """The claims of a file, with the trials of those that are corrected."""
-    section = names_of(__name__, {file: "CLAIMS TRIALS"})
-    trials = section("TRIALS")
-    return tuple(replace(claim, trials=trials.get(claim.id)) for claim in section("CLAIMS"))
-
 
 FILES = (
     "section2",
-    "section2_maps",
     "section3",
     "section4",
     "section4a_arc",
@@ -33,4 +20,4 @@ FILES = (
     "section6_negative",
     "section6_regions",
 )
-SECTIONS: dict[str, Callable[[], tuple[Claim, ...]]] = {file: partial(_claims, file) for file in FILES}
+SECTIONS = {file: names_of(__name__, {file: "CLAIMS TRIALS"}) for file in FILES}

@@ -5,7 +5,7 @@ from typing import Any
 import sympy
 
 from singimpact.algebra.certificates import positive_on, value_at
-from singimpact.paper.claims.claim import Check, Claim, Statement
+from singimpact.paper.claims.claim import Check, Encoding, Statement
 from singimpact.paper.claims.sections.section2_trials import TRIALS as TRIALS
 from singimpact.paper.claims.verifiers import every, identity, is_zero, same
 from singimpact.paper.routes import implicit as route
@@ -15,7 +15,6 @@ from singimpact.theory.notation import latex
 
 a = a_symbol(0)
 NORMALLY_HYPERBOLIC = "the theorem of Hirsch, Pugh and Shub"
-_MAP = r"(\sigma,t)\mapsto"
 
 
 def _image(matrix: sympy.MatrixBase) -> tuple[sympy.Expr, sympy.Expr]:
@@ -108,107 +107,38 @@ def _smooth_foliation(stated: int) -> Check:
     return every([(what, all(abs(order - stated) < 0.25 for order in orders))], kind="cited")
 
 
-CLAIMS = (
-    Claim(
-        id="s3-Dp",
-        section="3.1",
-        title="the derivative of p at a point of Pi_0",
-        printed=Statement(rf"Dp(z_*):{_MAP}(\sigma,-\tfrac12a_*t)", (sigma, -a * t / 2)),
-        verify=identity(lambda: _image(route.Dp())),
-        mutants=((sigma, a * t / 2), (sigma + t, -a * t / 2)),
-        rests_on=("e:acc",),
+CLAIMS = {
+    "s3-Dp": Encoding(
+        (sigma, -a * t / 2), identity(lambda: _image(route.Dp())), ((sigma, a * t / 2), (sigma + t, -a * t / 2))
     ),
-    Claim(
-        id="s3-dvdt",
-        section="3.1",
-        title="dv_c/dt at z_*; the sign printed here contradicts e:acc",
-        printed=Statement(r"\frac{\partial v_c}{\partial t}(z_*)=\tfrac12a_*", a / 2),
-        verify=identity(route.slope_at_rest),
-        corrected=lambda: Statement(
-            rf"\frac{{\partial v_c}}{{\partial t}}(z_*)={latex(route.slope_at_rest())}", route.slope_at_rest()
+    "s3-dvdt": Encoding(
+        a / 2,
+        identity(route.slope_at_rest),
+        (a, -a),
+        lambda: Statement(
+            f"\\frac{{\\partial v_c}}{{\\partial t}}(z_*)={latex(route.slope_at_rest())}", route.slope_at_rest()
         ),
-        mutants=(a, -a),
-        rests_on=("e:acc",),
     ),
-    Claim(
-        id="s3-Dphi",
-        section="3.1",
-        title="the derivative of phi at a point of Pi_0",
-        printed=Statement(rf"D\phi(z_*):{_MAP}(\sigma+t,\tfrac12a_*t)", (sigma + t, a * t / 2)),
-        verify=identity(lambda: _image(route.Dphi())),
-        mutants=((sigma + t, -a * t / 2), (sigma, a * t / 2)),
-        rests_on=("e:phi",),
+    "s3-Dphi": Encoding(
+        (sigma + t, a * t / 2), identity(lambda: _image(route.Dphi())), ((sigma + t, -a * t / 2), (sigma, a * t / 2))
     ),
-    Claim(
-        id="s3-DG",
-        section="3.1",
-        title="the derivative of G at a regular point",
-        printed=Statement(r"DG(w_*)=\begin{pmatrix}1&-2/a_*\\0&r\end{pmatrix}", sympy.Matrix([[1, -2 / a], [0, r]])),
-        verify=identity(route.DG, "derived as DR Dphi Dp^(-1)"),
-        mutants=(sympy.Matrix([[1, 2 / a], [0, r]]), sympy.Matrix([[1, -2 / a], [0, -r]])),
-        rests_on=("s3-Dp", "s3-Dphi"),
+    "s3-DG": Encoding(
+        sympy.Matrix([[1, -2 / a], [0, r]]),
+        identity(route.DG, "derived as DR Dphi Dp^(-1)"),
+        (sympy.Matrix([[1, 2 / a], [0, r]]), sympy.Matrix([[1, -2 / a], [0, -r]])),
     ),
-    Claim(
-        id="s3-eigenvectors",
-        section="3.1",
-        title="eigenvectors of DG(w_*): along Pi_0, and the direction of chatter",
-        printed=Statement(
-            r"(1,0)\ \text{for}\ 1,\qquad(2,a_*(1-r))\ \text{for}\ r", ((1, (1, 0)), (r, (2, a * (1 - r))))
-        ),
-        verify=_eigenvectors,
-        mutants=(
-            ((1, (1, 0)), (r, (2, a * (r - 1)))),
-            ((1, (1, 0)), (r, (1, a * (1 - r)))),
-            ((r, (1, 0)), (1, (1, 0))),
-        ),
-        rests_on=("s3-DG",),
+    "s3-eigenvectors": Encoding(
+        ((1, (1, 0)), (r, (2, a * (1 - r)))),
+        _eigenvectors,
+        (((1, (1, 0)), (r, (2, a * (r - 1)))), ((1, (1, 0)), (r, (1, a * (1 - r)))), ((r, (1, 0)), (1, (1, 0)))),
     ),
-    Claim(
-        id="s3-slope-r",
-        section="3.1",
-        title="the slope (1-r)a/2 of the chatter direction tends to 0 as r -> 1",
-        printed=Statement(r"\lim_{r\to1}\tfrac12(1-r)a_*=0", sympy.Integer(0)),
-        verify=_slope_limit(r, 1),
-        mutants=(a / 2, sympy.Integer(1)),
-        rests_on=("s3-eigenvectors",),
+    "s3-slope-r": Encoding(sympy.Integer(0), _slope_limit(r, 1), (a / 2, sympy.Integer(1))),
+    "t:t1": Encoding((2, (1 - r) * a), _slope_sign, ((2, (1 + r) * a), (1, (1 - r) * a))),
+    "t:t1-foliation": Encoding(
+        (sympy.Integer(1), r),
+        _normally_hyperbolic,
+        ((sympy.Integer(1), 1 / r), (r, sympy.Integer(1)), (sympy.Integer(1), -r)),
     ),
-    Claim(
-        id="t:t1",
-        section="3.1",
-        title="through each (tau, 0) with a < 0 passes a stable manifold tangent to (2, (1-r)a)",
-        printed=Statement(r"T_{(\tau,0)}W^s_\tau=\langle(2,(1-r)a(\tau))\rangle", (2, (1 - r) * a)),
-        verify=_slope_sign,
-        mutants=((2, (1 + r) * a), (1, (1 - r) * a)),
-        rests_on=("s3-eigenvectors",),
-    ),
-    Claim(
-        id="t:t1-foliation",
-        section="3.1",
-        title="W^s_tau consists of the states that converge to (tau, 0), and these curves foliate a neighbourhood continuously",
-        printed=Statement(
-            r"W^s_\tau=\{u:G^n(u)\to w_\tau\},\quad\text{multipliers}\ 1\ \text{along}\ \Pi_0,\ r\ \text{across}",
-            (sympy.Integer(1), r),
-        ),
-        verify=_normally_hyperbolic,
-        mutants=((sympy.Integer(1), 1 / r), (r, sympy.Integer(1)), (sympy.Integer(1), -r)),
-        rests_on=("s3-eigenvectors", "t:t1"),
-    ),
-    Claim(
-        id="s3-takens",
-        section="3.1",
-        title="the stable manifolds form a smooth foliation (theorem of Takens, quoted)",
-        printed=Statement(r"\Phi:J\times\mathbf R\to U\ \text{is a}\ C^\infty\ \text{diffeomorphism}", 3),
-        verify=_smooth_foliation,
-        mutants=(2, 4),
-        rests_on=("t:t1",),
-    ),
-    Claim(
-        id="s3-slope",
-        section="3.1",
-        title="the slope of the stable manifolds at Pi_0 tends to 0 as a -> 0",
-        printed=Statement(r"\lim_{a\to0}\tfrac12(1-r)a=0", sympy.Integer(0)),
-        verify=_slope_limit(a, 0),
-        mutants=((1 - r) / 2,),
-        rests_on=("s3-eigenvectors", "t:t1"),
-    ),
-)
+    "s3-takens": Encoding(3, _smooth_foliation, (2, 4)),
+    "s3-slope": Encoding(sympy.Integer(0), _slope_limit(a, 0), ((1 - r) / 2,)),
+}

@@ -10,7 +10,7 @@ from singimpact.algebra.expressions import Name
 from singimpact.algebra.parsing import parse
 from singimpact.algebra.rings import to_sympy
 from singimpact.contact.contact import rest_acceleration
-from singimpact.paper.claims.claim import Check, Claim, Statement
+from singimpact.paper.claims.claim import Check, Encoding, Statement
 from singimpact.paper.claims.sections.section4_trials import TRIALS as TRIALS
 from singimpact.paper.claims.verifiers import every, identity, is_zero, root_of_line, same
 from singimpact.paper.routes import fold, implicit as route
@@ -36,9 +36,8 @@ def _coefficient_of(series: sympy.Expr, sigma_power: int, t_power: int) -> Any:
     return sympy.expand(series).coeff(sigma, sigma_power).coeff(t, t_power).subs(f_symbol(0, 1), -b)
 
 
-def _vtaylor(name: str, where: tuple[tuple[int, int], ...], printed: Statement, mutants: tuple[Any, ...]) -> Claim:
-    """A claim on coefficients of v_c; the corrected one comes from the paper's own route, the implicit function."""
-    shown = " and ".join(_monomial(*pair).replace("\\", "") for pair in where)
+def _vtaylor(where: tuple[tuple[int, int], ...], printed: Any, mutants: tuple[Any, ...]) -> Encoding:
+    """A statement on coefficients of v_c; the corrected one comes from the paper's own route, the implicit function."""
 
     def corrected() -> Statement:
         values = tuple(_coefficient_of(route.v_c(3), *pair) for pair in where)
@@ -46,18 +45,10 @@ def _vtaylor(name: str, where: tuple[tuple[int, int], ...], printed: Statement, 
             r",\quad ".join(rf"[{_monomial(*p)}]\,v_c={latex(x)}" for p, x in zip(where, values, strict=True)), values
         )
 
-    return Claim(
-        id=name,
-        section="4",
-        title=f"the coefficient of {shown} in v_c, b = d(x'')/dv",
-        printed=printed,
-        verify=identity(
-            lambda: tuple(_coefficient(*pair) for pair in where), "the solution of the boundary value problem"
-        ),
-        corrected=corrected,
-        mutants=mutants,
-        rests_on=("e:yeq", "e3"),
+    verify = identity(
+        lambda: tuple(_coefficient(*pair) for pair in where), "the solution of the boundary value problem"
     )
+    return Encoding(printed, verify, mutants, corrected)
 
 
 def _monomial(i: int, j: int) -> str:
@@ -183,134 +174,53 @@ def _saddle(stated: int) -> Check:
     )
 
 
-CLAIMS = (
-    Claim(
-        id="e:lin",
-        section="4",
-        title="for x'' + x = cos(omega t): a_c and the period",
-        printed=Statement(
-            r"a_c(\tau)=-c+\cos\omega\tau,\quad T=2\pi/\omega", (-c + sympy.cos(omega * tau), 2 * sympy.pi / omega)
-        ),
-        verify=_linear_model,
-        mutants=(
+CLAIMS = {
+    "e:lin": Encoding(
+        (-c + sympy.cos(omega * tau), 2 * sympy.pi / omega),
+        _linear_model,
+        (
             (c + sympy.cos(omega * tau), 2 * sympy.pi / omega),
             (-c + sympy.cos(omega * tau), sympy.pi / omega),
             (-c + sympy.cos(omega * tau), 4 * sympy.pi / omega),
         ),
     ),
-    Claim(
-        id="s4-zeros",
-        section="4",
-        title="for all c but few the zeros of a_c are simple, so finitely many a period; for x'' + x = cos(omega t), c = +-1 are left out",
-        printed=Statement(
-            r"a_c=a_c'=0\ \text{for no}\ \tau,\ c\ \text{generic};\quad\ddot x+x=\cos\omega t:\ \text{only for}\ c^2=1",
-            c**2 - 1,
-        ),
-        verify=_zeros,
-        mutants=(c**2 - 4, c - 1, c**2 + 1),
-        rests_on=("e:lin",),
+    "s4-zeros": Encoding(c**2 - 1, _zeros, (c**2 - 4, c - 1, c**2 + 1)),
+    "e:phi": Encoding(sympy.Integer(0), _phi, (-t, t / 2), lambda: t),
+    "e3": Encoding(v, identity(lambda: route.y_c(4).subs(t, 0)), (2 * v, v + sigma, v + v**2)),
+    "e:vtaylor-t2": _vtaylor(
+        ((0, 2),), (HALF * (-THIRD * a1 + HALF * a * b),), ((HALF * (-THIRD * a1 - a * b / 6),), (-a1 / 6,))
     ),
-    Claim(
-        id="e:phi",
-        section="4",
-        title="phi_c is (tau + t, velocity at t); printed without the time at which x-dot_c is taken",
-        printed=Statement(r"\phi_c:(\tau,t)\mapsto(\tau+t,\ \dot x_c(\tau,v_c(\tau,t))", sympy.Integer(0)),
-        verify=_phi,
-        corrected=lambda: Statement(r"\phi_c:(\tau,t)\mapsto(\tau+t,\ \dot x_c(\tau,v_c(\tau,t);t))", t),
-        mutants=(-t, t / 2),
-        rests_on=("e:yeq",),
+    "e:vtaylor-st": _vtaylor(((1, 1), (2, 1)), (-HALF * a1, -a2 / 4), ((HALF * a1, -a2 / 4), (-HALF * a1, -a2 / 2))),
+    "e:vtaylor-st2": _vtaylor(
+        ((1, 2),), (HALF * (-THIRD * a2 + HALF * a1 * b),), ((HALF * (-THIRD * a2 - a1 * b / 6),), (-a2 / 6,))
     ),
-    Claim(
-        id="e3",
-        section="4",
-        title="y_c = v at t = 0, so dy_c/dv = 1 and its other v- and tau-derivatives vanish on Pi_0",
-        printed=Statement(r"v=\dot x_c(\tau,v;0)=y_c(\tau,v;0)", v),
-        verify=identity(lambda: route.y_c(4).subs(t, 0)),
-        mutants=(2 * v, v + sigma, v + v**2),
-        rests_on=("e:yeq",),
-    ),
-    _vtaylor(
-        "e:vtaylor-t2",
-        ((0, 2),),
-        Statement(r"[t^2]\,v_c=\tfrac12(-\tfrac13a'+\tfrac12ab)", (HALF * (-THIRD * a1 + HALF * a * b),)),
-        ((HALF * (-THIRD * a1 - a * b / 6),), (-a1 / 6,)),
-    ),
-    _vtaylor(
-        "e:vtaylor-st",
-        ((1, 1), (2, 1)),
-        Statement(r"[\sigma t]\,v_c=-\tfrac12a',\quad[\sigma^2t]\,v_c=-\tfrac14a''", (-HALF * a1, -a2 / 4)),
-        ((HALF * a1, -a2 / 4), (-HALF * a1, -a2 / 2)),
-    ),
-    _vtaylor(
-        "e:vtaylor-st2",
-        ((1, 2),),
-        Statement(r"[\sigma t^2]\,v_c=\tfrac12(-\tfrac13a''+\tfrac12a'b)", (HALF * (-THIRD * a2 + HALF * a1 * b),)),
-        ((HALF * (-THIRD * a2 - a1 * b / 6),), (-a2 / 6,)),
-    ),
-    _vtaylor(
-        "e:vtaylor-t3",
+    "e:vtaylor-t3": _vtaylor(
         ((0, 3),),
-        Statement(
-            r"[t^3]\,v_c=-\tfrac16(\tfrac14a''+\tfrac32(-\tfrac13a'+\tfrac12ab)b)",
-            (-(a2 / 4 + sympy.Rational(3, 2) * (-THIRD * a1 + HALF * a * b) * b) / 6,),
-        ),
+        (-(a2 / 4 + sympy.Rational(3, 2) * (-THIRD * a1 + HALF * a * b) * b) / 6,),
         ((-a2 / 24,), (-a2 / 24 + a1 * b / 24,)),
     ),
-    Claim(
-        id="s4-depends-on-c",
-        section="4",
-        title="a' and a'' at tau_* in general depend on c, because tau_* does",
-        printed=Statement(
-            r"\frac{d}{dc}a'(\tau_*)=\frac{a''f_{10}}{a'},\quad\frac{d}{dc}a''(\tau_*)=\frac{a'''f_{10}}{a'}",
-            (a2 * f_symbol(1, 0) / a1, a_symbol(3) * f_symbol(1, 0) / a1),
-        ),
-        verify=_depends_on_c,
-        mutants=((sympy.Integer(0), sympy.Integer(0)), (-a2 * f_symbol(1, 0) / a1, a_symbol(3) * f_symbol(1, 0) / a1)),
+    "s4-depends-on-c": Encoding(
+        (a2 * f_symbol(1, 0) / a1, a_symbol(3) * f_symbol(1, 0) / a1),
+        _depends_on_c,
+        ((sympy.Integer(0), sympy.Integer(0)), (-a2 * f_symbol(1, 0) / a1, a_symbol(3) * f_symbol(1, 0) / a1)),
     ),
-    Claim(
-        id="e:degen",
-        section="4",
-        title="v_c at a tangency point to second order",
-        printed=Statement(r"v_c=-\tfrac16a't(3\sigma+t)+O(3)", -a1 * t * (3 * sigma + t) / 6),
-        verify=_leading(1, 2),
-        mutants=(-a1 * t * (3 * sigma + 2 * t) / 6, a1 * t * (3 * sigma + t) / 6, -a1 * t * (3 * sigma + t) / 3),
-        rests_on=("e:vtaylor-t2", "e:vtaylor-st"),
+    "e:degen": Encoding(
+        -a1 * t * (3 * sigma + t) / 6,
+        _leading(1, 2),
+        (-a1 * t * (3 * sigma + 2 * t) / 6, a1 * t * (3 * sigma + t) / 6, -a1 * t * (3 * sigma + t) / 3),
     ),
-    Claim(
-        id="e:swan",
-        section="4",
-        title="v_c at a swan point to third order",
-        printed=Statement(
-            r"v_c=-\tfrac1{24}a''t(6\sigma^2+4\sigma t+t^2)+O(4)", -a2 * t * (6 * sigma**2 + 4 * sigma * t + t**2) / 24
-        ),
-        verify=_leading(2, 3),
-        mutants=(
-            -a2 * t * (6 * sigma**2 + 8 * sigma * t + t**2) / 24,
-            -a2 * t * (6 * sigma**2 + 4 * sigma * t + t**2) / 12,
-        ),
-        rests_on=("e:vtaylor-st", "e:vtaylor-st2", "e:vtaylor-t3"),
+    "e:swan": Encoding(
+        -a2 * t * (6 * sigma**2 + 4 * sigma * t + t**2) / 24,
+        _leading(2, 3),
+        (-a2 * t * (6 * sigma**2 + 8 * sigma * t + t**2) / 24, -a2 * t * (6 * sigma**2 + 4 * sigma * t + t**2) / 12),
     ),
-    Claim(
-        id="s4-saddle",
-        section="4.1",
-        title="v_c has a saddle point at a tangency point",
-        printed=Statement(r"\det D^2v_c(0,0)<0", -1),
-        verify=_saddle,
-        mutants=(1, 0),
-        rests_on=("e:degen",),
-    ),
-    Claim(
-        id="s4-horizon-line",
-        section="4.1",
-        title="H_c is tangent to 3 sigma + 2t = 0, and p(H_c) is v = (3/8) a' sigma^2 + O(3)",
-        printed=Statement(
-            r"3\sigma+2t=0,\qquad v=\tfrac38a'\sigma^2+O(3)", (-3 * sigma / 2, sympy.Rational(3, 8) * a1 * sigma**2)
-        ),
-        verify=identity(lambda: tuple(part.subs(fold.k, a1 / 6) for part in fold.horizon())),
-        mutants=(
+    "s4-saddle": Encoding(-1, _saddle, (1, 0)),
+    "s4-horizon-line": Encoding(
+        (-3 * sigma / 2, sympy.Rational(3, 8) * a1 * sigma**2),
+        identity(lambda: tuple(part.subs(fold.k, a1 / 6) for part in fold.horizon())),
+        (
             (-2 * sigma / 3, sympy.Rational(3, 8) * a1 * sigma**2),
             (-3 * sigma / 2, -sympy.Rational(3, 8) * a1 * sigma**2),
         ),
-        rests_on=("e:pnew",),
     ),
-)
+}

@@ -1,11 +1,12 @@
 """Section 4.1(a): the discontinuity arc P_* and the theorem on the invariant arc gamma at a tangency with a' > 0."""
 
+from collections.abc import Callable
 from typing import Any
 
 import sympy
 
 from singimpact.algebra.certificates import negative_on, positive_on, value_at
-from singimpact.paper.claims.claim import Check, Claim, Statement
+from singimpact.paper.claims.claim import Check, Encoding, Statement
 from singimpact.paper.claims.sections import section4_orbits as orbits
 from singimpact.paper.claims.sections.section4_trials import TRIALS as TRIALS
 from singimpact.paper.claims.sections.section4a_blowup import HALF, THREE_HALVES
@@ -143,26 +144,33 @@ def _attracting(stated: tuple[int, int]) -> Check:
     )
 
 
-def _repelling(stated: int) -> Check:
-    """DG at points of gamma has one eigenvalue > 1, in the limit at w_*, whose direction is not gamma's."""
-    matrix = DG_on_ray(1)
-    at_one = sympy.cancel(1 - matrix.trace() + matrix.det())
-    slope = 2 * leading_coefficient(1)  # tangent of gamma at sigma = 1, in units of a'
-    image = matrix * sympy.Matrix([1, slope])
-    turned = sympy.cancel(image[0] * slope - image[1])
-    off = positive_on(turned, lambda_, 0, 1) or negative_on(turned, lambda_, 0, 1)
-    count = 1 if negative_on(at_one, lambda_, 0, 1) and positive_on(matrix.det(), lambda_, 0, 1) else 0
-    return every(
-        [
-            *orbits.limit_of_DG(1),
-            (
-                "the characteristic polynomial is negative at 1 and positive at 0 and at infinity for every r in (0, 1)",
-                count == 1 and _interval_map(r_of_lambda(1)),
-            ),
-            ("so one eigenvalue is > 1", count == stated),
-            ("the tangent of gamma is no eigenvector, so its direction is transverse", off),
-        ]
-    )
+def repelling(j: int) -> Callable[[int], Check]:
+    """A verifier of the number of eigenvalues > 1 of DG at points of gamma, in the limit at a contact of order j.
+
+    There is one, whose direction is not gamma's.
+    """
+
+    def verify(stated: int) -> Check:
+        matrix = DG_on_ray(j)
+        at_one = sympy.cancel(1 - matrix.trace() + matrix.det())
+        slope = (j + 1) * leading_coefficient(j)  # tangent of gamma at sigma = 1, in units of a^(j)/j!
+        image = matrix * sympy.Matrix([1, slope])
+        turned = sympy.cancel(image[0] * slope - image[1])
+        off = positive_on(turned, lambda_, 0, 1) or negative_on(turned, lambda_, 0, 1)
+        count = 1 if negative_on(at_one, lambda_, 0, 1) and positive_on(matrix.det(), lambda_, 0, 1) else 0
+        return every(
+            [
+                *orbits.limit_of_DG(j),
+                (
+                    "the characteristic polynomial is negative at 1 and positive at 0 and at infinity for every r in (0, 1)",
+                    count == 1 and _interval_map(r_of_lambda(j)),
+                ),
+                ("so one eigenvalue is > 1", count == stated),
+                ("the tangent of gamma is no eigenvector, so its direction is transverse", off),
+            ]
+        )
+
+    return verify
 
 
 def _at_rest(stated: sympy.Expr) -> Check:
@@ -265,104 +273,32 @@ def rate_on_gamma(j: int) -> tuple[str, bool]:
     return f"sigma'/sigma on true orbits agrees to {worst:.0e}", worst < REACHED
 
 
-CLAIMS = (
-    Claim(
-        id="s4-P-star",
-        section="4.1(a)",
-        title="for a' > 0 the arc P_* (sigma < 0) is the set of points v > 0 near w_* where F is discontinuous",
-        printed=Statement(r"P_*:\ v=\tfrac38a'\sigma^2+O(3),\ \sigma<0", (sympy.Rational(3, 8), -1)),
-        verify=_discontinuity,
-        mutants=((sympy.Rational(3, 8), 1), (sympy.Rational(1, 4), -1)),
-        rests_on=("s4-horizon-line",),
+CLAIMS = {
+    "s4-P-star": Encoding(
+        (sympy.Rational(3, 8), -1), _discontinuity, ((sympy.Rational(3, 8), 1), (sympy.Rational(1, 4), -1))
     ),
-    Claim(
-        id="t:t2-exists",
-        section="4.1(a)",
-        title="G has an invariant arc gamma, quadratically tangent to Pi_0 from tau < tau_*, between P_* and Pi_0",
-        printed=Statement(r"\gamma:\ v\sim C\sigma^2,\ \sigma<0,\quad0<C<\tfrac38a'", (2, -1, sympy.Rational(3, 8))),
-        verify=_exists,
-        mutants=(
+    "t:t2-exists": Encoding(
+        (2, -1, sympy.Rational(3, 8)),
+        _exists,
+        (
             (3, -1, sympy.Rational(3, 8)),
             (2, 1, sympy.Rational(3, 8)),
             (2, -1, sympy.Rational(5, 8)),
             (2, -1, sympy.Rational(1, 3)),
         ),
-        rests_on=("s4-saddle-m3", "s4-horizon-line"),
     ),
-    Claim(
-        id="t:t2-smooth",
-        section="4.1(a)",
-        title="gamma is smooth up to its end w_*, for every r in (0, 1)",
-        printed=Statement(r"\gamma\in C^\infty\ \text{up to}\ w_*", sympy.oo),
-        verify=orbits.smooth(1),
-        mutants=(sympy.Integer(2), sympy.Integer(3)),
-        rests_on=("t:t2-exists",),
+    "t:t2-smooth": Encoding(sympy.oo, orbits.smooth(1), (sympy.Integer(2), sympy.Integer(3))),
+    "t:t2-unique": Encoding((v >= 0, 1), _unique, ((v > 0, 2), (v > 0, 0)), lambda: (v > 0, 1)),
+    "t:t2-attracting": Encoding((0, 1), _attracting, ((1, 2), (0, 2))),
+    "t:t2-repelling": Encoding(1, repelling(1), (0, 2)),
+    "t:t2-fixed": Encoding(
+        sympy.Integer(0), _at_rest, (-a_symbol(1) * t**3 / 6, a_symbol(1) * t**3 / 2), lambda: a_symbol(1) * t**3 / 6
     ),
-    Claim(
-        id="t:t2-unique",
-        section="4.1(a)",
-        title="gamma is the only invariant arc in v >= 0 ending at w_*; Pi_0 itself is another",
-        printed=Statement(r"\gamma\subset\Pi_0^+\ \text{is the only invariant arc ending at}\ w_*", (v >= 0, 1)),
-        verify=_unique,
-        corrected=lambda: Statement(
-            r"\gamma\ \text{is the only invariant arc ending at}\ w_*\ \text{with}\ v>0\ \text{off}\ w_*", (v > 0, 1)
-        ),
-        mutants=((v > 0, 2), (v > 0, 0)),
-        rests_on=("s4-m3", "s4-saddle-m3", "e:meq"),
+    "t:t2-sides": Encoding(("chatter", "lost"), _sides, (("lost", "chatter"), ("chatter", "chatter"))),
+    "t:t2-eigenvalue-limit": Encoding(
+        sympy.Integer(1),
+        _limit,
+        (sympy.Integer(2), lambda_, eigenvalues_on_gamma(1)[1]),
+        lambda: Statement(limit_in_words(1), eigenvalues_on_gamma(1)[0]),
     ),
-    Claim(
-        id="t:t2-attracting",
-        section="4.1(a)",
-        title="w_* is exponentially attracting for G on gamma",
-        printed=Statement(r"\sigma\mapsto\lambda\sigma+O(2)\ \text{on}\ \gamma,\quad0<\lambda<1", (0, 1)),
-        verify=_attracting,
-        mutants=((1, 2), (0, 2)),
-        rests_on=("t:t2-exists", "s4-saddle-m3"),
-    ),
-    Claim(
-        id="t:t2-repelling",
-        section="4.1(a)",
-        title="at points of gamma DG has an eigenvalue > 1 with direction transverse to gamma",
-        printed=Statement(r"\#\{\text{eigenvalues of}\ DG(w)>1\}=1,\ w\in\gamma", 1),
-        verify=_repelling,
-        mutants=(0, 2),
-        rests_on=("t:t2-exists",),
-    ),
-    Claim(
-        id="t:t2-fixed",
-        section="4.1(a)",
-        title="w_* is a fixed point of G; with F as the paper defines it there, the mass lifts off instead",
-        printed=Statement(r"G(w_*)=w_*", sympy.Integer(0)),
-        verify=_at_rest,
-        corrected=lambda: Statement(
-            r"F(w_*)\ne w_*:\ x_c-c=\tfrac16a't^3+\dots>0;\quad G(w)\to w_*\ \text{as}\ w\to w_*\ \text{along}\ \gamma",
-            a_symbol(1) * t**3 / 6,
-        ),
-        mutants=(-a_symbol(1) * t**3 / 6, a_symbol(1) * t**3 / 2),
-        rests_on=("e:yeq", "t:t2-exists"),  # the second half of the corrected statement needs gamma
-    ),
-    Claim(
-        id="t:t2-sides",
-        section="4.1(a)",
-        title="below gamma chatter is complete; above it contact is lost after finitely many impacts",
-        printed=Statement(
-            r"v<\gamma:\ \text{complete chatter};\quad v>\gamma:\ \text{contact is lost}", ("chatter", "lost")
-        ),
-        verify=_sides,
-        mutants=(("lost", "chatter"), ("chatter", "chatter")),
-        rests_on=("t:t2-exists",),
-    ),
-    Claim(
-        id="t:t2-eigenvalue-limit",
-        section="4.1(a)",
-        title="the eigenvalue > 1 of DG tends to 1 along gamma; for fixed r < 1 its limit is above 1",
-        printed=Statement(r"\lim_{w\to w_*,\,w\in\gamma}\Lambda(w)=1", sympy.Integer(1)),
-        verify=_limit,
-        corrected=lambda: Statement(
-            limit_in_words(1),
-            eigenvalues_on_gamma(1)[0],
-        ),
-        mutants=(sympy.Integer(2), lambda_, eigenvalues_on_gamma(1)[1]),
-        rests_on=("t:t2-repelling",),
-    ),
-)
+}

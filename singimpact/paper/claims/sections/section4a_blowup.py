@@ -7,7 +7,7 @@ import sympy
 
 from singimpact.algebra import certificates
 from singimpact.algebra.certificates import negative_on, positive_on
-from singimpact.paper.claims.claim import Check, Claim, Statement, in_section
+from singimpact.paper.claims.claim import Check, Encoding, Statement
 from singimpact.paper.claims.next_sigma import next_sigma, next_sigma_remainder
 from singimpact.paper.claims.sections.section4_trials import TRIALS as TRIALS
 from singimpact.paper.claims.verifiers import every, identity, is_zero, sample
@@ -342,153 +342,72 @@ def _trivial_root(stated: sympy.Expr) -> Check:
     )
 
 
-claim_4a = in_section("4.1(a)")
-
-
-CLAIMS = (
-    Claim(
-        id="e:pnew",
-        section="4.1(a)",
-        title="p at a tangency point",
-        printed=Statement(
-            r"p:(\sigma,t)\mapsto(\sigma,-k(3\sigma t+t^2)+O(3)),\ k=\tfrac16a'", (sigma, -k * (3 * sigma * t + t**2))
-        ),
-        verify=identity(fold.p),
-        mutants=((sigma, k * (3 * sigma * t + t**2)), (sigma, -k * (3 * sigma * t + 2 * t**2))),
-        rests_on=("e:degen",),
+CLAIMS = {
+    "e:pnew": Encoding(
+        (sigma, -k * (3 * sigma * t + t**2)),
+        identity(fold.p),
+        ((sigma, k * (3 * sigma * t + t**2)), (sigma, -k * (3 * sigma * t + 2 * t**2))),
     ),
-    Claim(
-        id="e:phinew",
-        section="4.1(a)",
-        title="phi at a tangency point; the sign of the second component is misprinted",
-        printed=Statement(
-            r"\phi:(\sigma,t)\mapsto(\sigma+t,-k(3\sigma t+2t^2)+O(3))", (sigma + t, -k * (3 * sigma * t + 2 * t**2))
-        ),
-        verify=identity(_involuted, "the launch velocity after the involution"),
-        corrected=lambda: Statement(
-            rf"\phi:(\sigma,t)\mapsto\bigl({latex(fold.phi()[0])},\ {latex(sympy.factor(fold.phi()[1]))}+O(3)\bigr)",
+    "e:phinew": Encoding(
+        (sigma + t, -k * (3 * sigma * t + 2 * t**2)),
+        identity(_involuted, "the launch velocity after the involution"),
+        ((sigma + t, k * (3 * sigma * t + t**2)), (sigma, k * (3 * sigma * t + 2 * t**2))),
+        lambda: Statement(
+            f"\\phi:(\\sigma,t)\\mapsto\\bigl({latex(fold.phi()[0])},\\ {latex(sympy.factor(fold.phi()[1]))}+O(3)\\bigr)",
             fold.phi(),
         ),
-        mutants=((sigma + t, k * (3 * sigma * t + t**2)), (sigma, k * (3 * sigma * t + 2 * t**2))),
-        rests_on=("e:phi", "e:degen"),
     ),
-    Claim(
-        id="s4-Z-line",
-        section="4.1(a)",
-        title="Z is 3 sigma + t = 0 to first order; phi takes sigma + t = 0 to the v-axis",
-        printed=Statement(r"Z:\ 3\sigma+t=0+O(2),\qquad\phi(\{\sigma+t=0\})\subset\{\sigma=0\}", (-3 * sigma, -t)),
-        verify=_z_line,
-        mutants=((-3 * sigma / 2, -t), (-3 * sigma, t), (sympy.Integer(0), -t)),
-        rests_on=("e:pnew", "e:phinew"),
-    ),
-    Claim(
-        id="s4-fold-form",
-        section="4.1(a)",
-        title="in (sigma, eta) p is a fold up to O(3), and psi straightens its outline",
-        printed=Statement(
-            r"p=(\sigma,-k\eta^2+\tfrac94k\sigma^2+O(3)),\quad\psi\circ p=(\sigma,-k\eta^2+O(3)),\quad\eta=\tfrac32\sigma+t",
-            (3 * sigma / 2 + t, (sigma, -k * eta**2 + QUARTERS * k * sigma**2), (sigma, -k * eta**2)),
-        ),
-        verify=identity(lambda: (fold.fold_coordinate(), fold.p_folded(), fold.psi_p())),
-        mutants=(
+    "s4-Z-line": Encoding((-3 * sigma, -t), _z_line, ((-3 * sigma / 2, -t), (-3 * sigma, t), (sympy.Integer(0), -t))),
+    "s4-fold-form": Encoding(
+        (3 * sigma / 2 + t, (sigma, -k * eta**2 + QUARTERS * k * sigma**2), (sigma, -k * eta**2)),
+        identity(lambda: (fold.fold_coordinate(), fold.p_folded(), fold.psi_p())),
+        (
             (3 * sigma / 2 + t, (sigma, -k * eta**2 - QUARTERS * k * sigma**2), (sigma, -k * eta**2)),
             (3 * sigma + t, (sigma, -k * eta**2 + QUARTERS * k * sigma**2), (sigma, -k * eta**2)),
         ),
-        rests_on=("e:pnew", "s4-horizon-line"),
     ),
-    Claim(
-        id="s4-normal-id2",
-        section="4.1(a)",
-        title="the diffeomorphisms that remove the O(3) terms are the identity to second order",
-        printed=Statement(r"\text{the changes agree with the identity up to terms of order }2", 2),
-        verify=_identity_order,
-        corrected=lambda: Statement(
-            rf"\text{{the changes agree with the identity up to terms of order }}{fold_form(4).identity_order}",
+    "s4-normal-id2": Encoding(
+        2,
+        _identity_order,
+        (0, 3),
+        lambda: Statement(
+            f"\\text{{the changes agree with the identity up to terms of order }}{fold_form(4).identity_order}",
             fold_form(4).identity_order,
         ),
-        mutants=(0, 3),
-        rests_on=("s4-fold-form",),
     ),
-    Claim(
-        id="e:pdef",
-        section="4.1(a)",
-        title="changes of source and target remove the higher-order terms of psi o p",
-        printed=Statement(r"\psi\circ p:(\sigma,\eta)\mapsto(\sigma,-k\eta^2)", (sigma, -k * eta**2)),
-        verify=_fold_form,
-        mutants=((sigma, k * eta**2), (sigma, -k * eta**2 + sigma * eta)),
-        rests_on=("s4-fold-form",),
-    ),
-    Claim(
-        id="e:defq",
-        section="4.1(a)",
-        title="psi o q, q = R o phi; in the coordinates of e:pdef its first component has quadratic terms",
-        printed=Statement(
-            r"\psi\circ q=(\eta-\tfrac12\sigma,\,-rk(2\eta^2-3\sigma\eta)-\tfrac94k(\eta-\tfrac12\sigma)^2+O(3))",
-            (
-                eta - sigma / 2,
-                -r * k * (2 * eta**2 - 3 * sigma * eta) - QUARTERS * k * (eta - sigma / 2) ** 2,
-                sympy.oo,
-            ),
-        ),
-        verify=_psi_q,
-        corrected=lambda: Statement(
-            r"\psi\circ q=(\eta-\tfrac12\sigma+O(2),\,-rk(2\eta^2-3\sigma\eta)-\tfrac94k(\eta-\tfrac12\sigma)^2+O(3))",
-            (*fold.psi_q(), 2),
-        ),
-        mutants=(
+    "e:pdef": Encoding((sigma, -k * eta**2), _fold_form, ((sigma, k * eta**2), (sigma, -k * eta**2 + sigma * eta))),
+    "e:defq": Encoding(
+        (eta - sigma / 2, -r * k * (2 * eta**2 - 3 * sigma * eta) - QUARTERS * k * (eta - sigma / 2) ** 2, sympy.oo),
+        _psi_q,
+        (
             (eta - sigma / 2, r * k * (2 * eta**2 - 3 * sigma * eta) - QUARTERS * k * (eta - sigma / 2) ** 2, 2),
             (eta - sigma / 2, -r * k * (2 * eta**2 - 3 * sigma * eta) - QUARTERS * k * (eta + sigma / 2) ** 2, 2),
             (eta - sigma / 2, -r * k * (2 * eta**2 - 3 * sigma * eta) - QUARTERS * k * (eta - sigma / 2) ** 2, 3),
             (eta + sigma / 2, -r * k * (2 * eta**2 - 3 * sigma * eta) - QUARTERS * k * (eta - sigma / 2) ** 2, 1),
         ),
-        rests_on=("e:phinew", "e:pdef"),
+        lambda: (*fold.psi_q(), 2),
     ),
-    Claim(
-        id="e:hdef",
-        section="4.1(a)",
-        title="h = p^{-1} o q on the visible part in the coordinates of e:pdef: the root is the negative one, + O(2) is missing",
-        printed=Statement(
-            r"h=\bigl(\eta-\tfrac12\sigma,\sqrt{Q_r(\sigma,\eta)+O(3)}\,\bigr)",
-            (
-                eta - sigma / 2,
-                sympy.sqrt(r * (2 * eta**2 - 3 * sigma * eta) + QUARTERS * (eta - sigma / 2) ** 2),
-                sympy.oo,
-            ),
-        ),
-        verify=_h,
-        corrected=lambda: Statement(
-            r"h=\bigl(\eta-\tfrac12\sigma+O(2),-\sqrt{Q_r(\sigma,\eta)+O(3)}\,\bigr),\quad\sigma<0", (*fold.h(), 2)
-        ),
-        mutants=(
+    "e:hdef": Encoding(
+        (eta - sigma / 2, sympy.sqrt(r * (2 * eta**2 - 3 * sigma * eta) + QUARTERS * (eta - sigma / 2) ** 2), sympy.oo),
+        _h,
+        (
             (eta - sigma / 2, eta, 2),
             (eta + sigma / 2, -sympy.sqrt(2 * r * eta**2 + QUARTERS * sigma**2), 2),
             (*fold.h(), 3),
             (*fold.h(), sympy.oo),
         ),
-        rests_on=("e:pdef", "e:defq", "e:qdef"),
+        lambda: (*fold.h(), 2),
     ),
-    Claim(
-        id="e:qdef",
-        section="4.1(a)",
-        title="Q_r, the square of the new eta",
-        printed=Statement(
-            r"Q_r(\sigma,\eta)=r(2\eta^2-3\sigma\eta)+\tfrac94(\eta-\tfrac12\sigma)^2",
-            r * (2 * eta**2 - 3 * sigma * eta) + QUARTERS * (eta - sigma / 2) ** 2,
-        ),
-        verify=identity(fold.Q_r),
-        mutants=(
+    "e:qdef": Encoding(
+        r * (2 * eta**2 - 3 * sigma * eta) + QUARTERS * (eta - sigma / 2) ** 2,
+        identity(fold.Q_r),
+        (
             r * (2 * eta**2 + 3 * sigma * eta) + QUARTERS * (eta - sigma / 2) ** 2,
             -r * (2 * eta**2 - 3 * sigma * eta) + QUARTERS * (eta - sigma / 2) ** 2,
         ),
-        rests_on=("s4-fold-form", "e:defq"),
     ),
-    claim_4a(
-        "s4-blowup",
-        "the blown-up h' on the visible part, s < 0, m > 1/2; in the coordinates of e:pdef s' has a term in s^2",
-        Statement(
-            r"s'=(m-\tfrac12)s,\quad m'=(m-\tfrac12)^{-1}\sqrt{Q_r(1,m)+O(s)}",
-            (m - HALF, ROOT / (m - HALF), sympy.oo),
-        ),
+    "s4-blowup": Encoding(
+        (m - HALF, ROOT / (m - HALF), sympy.oo),
         _blow_up,
         (
             (m - HALF, -ROOT / (m - HALF), 2),
@@ -496,88 +415,38 @@ CLAIMS = (
             (m - HALF, ROOT / (m - HALF), 1),
             (m - HALF, ROOT / (m - HALF), 3),
         ),
-        ("e:hdef", "e:qdef"),
-        lambda: Statement(
-            r"s'=(m-\tfrac12)s+O(s^2),\quad m'=(m-\tfrac12)^{-1}\sqrt{Q_r(1,m)+O(s)}", (*fold.h_blown_up(), 2)
-        ),
+        lambda: (*fold.h_blown_up(), 2),
     ),
-    claim_4a(
-        "s4-Qr-zeros",
-        "Q_r(1, m) has zeros 0 < m_- < 1/2 < m_+ < 3/2, is positive outside, and both tend to 1/2 as r -> 0",
-        Statement(
-            r"0<m_-<\tfrac12<m_+<\tfrac32,\qquad m_\pm\to\tfrac12\ (r\to0)", (sympy.Integer(0), HALF, THREE_HALVES)
-        ),
+    "s4-Qr-zeros": Encoding(
+        (sympy.Integer(0), HALF, THREE_HALVES),
         _q_zeros,
         ((sympy.Integer(0), sympy.Integer(1), THREE_HALVES), (HALF, THREE_HALVES, sympy.Integer(2))),
-        ("e:qdef",),
     ),
-    claim_4a(
-        "s4-Er-closed",
-        "Q_r(1, m) > 0 on the closed set E_r; at its ends it is 0",
-        Statement(r"Q_r(1,m)>0\ \text{for}\ m\in E_r=(-\infty,m_-]\cup[m_+,\infty)", Q > 0),
-        _q_positive,
-        (Q < 0, Q <= 0),
-        ("s4-Qr-zeros",),
-        lambda: Statement(
-            r"Q_r(1,m)\ge0\ \text{for}\ m\in E_r,\ \text{with}\ 0\ \text{at}\ m_\pm\ \text{only}", Q >= 0
-        ),
-    ),
-    claim_4a(
-        "s4-domain",
-        "near s = 0 the domain of h' is bounded by smooth curves through m_- and m_+",
-        Statement(r"m=\delta_\pm(s),\qquad\delta_\pm(0)=m_\pm", ENDS),
-        _domain,
-        (ENDS[::-1], (HALF, THREE_HALVES), (ENDS[0], ENDS[0])),
-        ("s4-Qr-zeros", "s4-blowup"),
-    ),
-    claim_4a(
-        "e:fixm-converse",
-        "every solution of the squared equation solves the fixed-point equation; m2 does not",
-        Statement(r"Q_r(1,m)=m^2(m-\tfrac12)^2\Rightarrow m=(m-\tfrac12)^{-1}\sqrt{Q_r(1,m)}", lambda _place: True),
+    "s4-Er-closed": Encoding(Q > 0, _q_positive, (Q < 0, Q <= 0), lambda: Q >= 0),
+    "s4-domain": Encoding(ENDS, _domain, (ENDS[::-1], (HALF, THREE_HALVES), (ENDS[0], ENDS[0]))),
+    "e:fixm-converse": Encoding(
+        lambda _place: True,
         _converse,
         (lambda place: place < 0, lambda place: place < HALF),
-        ("e:fixm", "s4-root-places"),
-        lambda: Statement(
-            r"Q_r(1,m)=m^2(m-\tfrac12)^2\ \text{and}\ m(m-\tfrac12)>0\Rightarrow m=(m-\tfrac12)^{-1}\sqrt{Q_r(1,m)}",
-            lambda place: place * (place - HALF) > 0,
-        ),
+        lambda: lambda place: place * (place - HALF) > 0,
     ),
-    claim_4a(
-        "e:fixm",
-        "a fixed point of h' on s = 0 satisfies Q_r(1, m) = m^2 (m - 1/2)^2",
-        Statement(r"Q_r(1,m)=m^2(m-\tfrac12)^2", r * (2 * m**2 - 3 * m) + QUARTERS * (m - HALF) ** 2 - QUARTIC),
+    "e:fixm": Encoding(
+        r * (2 * m**2 - 3 * m) + QUARTERS * (m - HALF) ** 2 - QUARTIC,
         _fixed_points,
         (
             r * (2 * m**2 - 3 * m) + QUARTERS * (m - HALF) ** 2 - m**2 * (m + HALF) ** 2,
             r * (2 * m**2 - 3 * m) + QUARTERS * (m - HALF) ** 2 - m * (m - HALF) ** 2,
         ),
-        ("s4-blowup", "e:qdef"),
     ),
-    claim_4a(
-        "e:meq",
-        "besides m = 3/2 the solutions are the roots of 2 r m = (m - 1/2)^2 (m + 3/2)",
-        Statement(r"2rm=(m-\tfrac12)^2(m+\tfrac32)", CUBIC - 2 * r * m),
+    "e:meq": Encoding(
+        CUBIC - 2 * r * m,
         identity(lambda: fold.fixed_point_factors()[1]),
         (CUBIC + 2 * r * m, CUBIC - r * m, (m - HALF) ** 2 * (m - THREE_HALVES) - 2 * r * m),
-        ("e:fixm",),
     ),
-    claim_4a(
-        "s4-root-places",
-        "the cubic has three real roots m1 < -3/2 and 0 < m2 < 1/2 < m3",
-        Statement(r"m_1<-\tfrac32,\quad0<m_2<\tfrac12<m_3", (-THREE_HALVES, sympy.Integer(0), HALF)),
+    "s4-root-places": Encoding(
+        (-THREE_HALVES, sympy.Integer(0), HALF),
         _root_places,
         ((-HALF, HALF, THREE_HALVES), (-sympy.Integer(3), sympy.Integer(0), HALF)),
-        ("e:meq",),
     ),
-    claim_4a(
-        "s4-m32-r1",
-        "m = 3/2 solves e:fixm only if r = 1; it solves it for every r",
-        Statement(r"m=\tfrac32\Rightarrow r=1", r - 1),
-        _trivial_root,
-        (r, r - 2),
-        ("e:fixm", "e:meq"),
-        lambda: Statement(
-            r"m=\tfrac32\ \text{solves}\ Q_r(1,m)=m^2(m-\tfrac12)^2\ \text{for every}\ r", sympy.Integer(0)
-        ),
-    ),
-)
+    "s4-m32-r1": Encoding(r - 1, _trivial_root, (r, r - 2), lambda: sympy.Integer(0)),
+}

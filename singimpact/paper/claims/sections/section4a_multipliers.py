@@ -6,7 +6,7 @@ from typing import Any
 import sympy
 
 from singimpact.algebra.certificates import negative_on, positive_on, value_at
-from singimpact.paper.claims.claim import Check, Statement
+from singimpact.paper.claims.claim import Check, Encoding, Statement
 from singimpact.paper.claims.sections.section4_trials import TRIALS as TRIALS
 from singimpact.paper.claims.sections.section4a_blowup import (
     CUBIC,
@@ -14,7 +14,6 @@ from singimpact.paper.claims.sections.section4a_blowup import (
     ROOT_SIGNS,
     THREE_HALVES,
     Q,
-    claim_4a,
     sign_chain,
 )
 from singimpact.paper.claims.verifiers import every, identity, is_zero, same
@@ -118,51 +117,13 @@ def ray_m3(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
     )
 
 
-RAYS = (
-    claim_4a(
-        "s4-m1",
-        "m1: p and q give the image opposite orientations, and it lies in v <= 0",
-        Statement(r"m_1<-\tfrac32:\quad v\le0,\ \text{opposite orientations}", (-1, -1)),
-        _line(-sympy.oo, -THREE_HALVES),
-        ((1, -1), (-1, 1)),
-        ("s4-root-places", "e:pdef", "e:defq"),
-    ),
-    claim_4a(
-        "s4-m1-gradient",
-        "in (sigma, t) the line of m1 has gradient m1 - 3/2 < -3",
-        Statement(r"t=(m_1-\tfrac32)\sigma,\quad m_1-\tfrac32<-3", (m - THREE_HALVES, -3)),
-        _gradient,
-        ((m + THREE_HALVES, -3), (m - THREE_HALVES, -2)),
-        ("s4-root-places", "s4-fold-form"),
-    ),
-    claim_4a(
-        "s4-m2",
-        "m2: p and q give the image opposite orientations",
-        Statement(r"0<m_2<\tfrac12:\quad\text{opposite orientations}", (-1, 1)),
-        _line(sympy.Integer(0), HALF),
-        ((1, 1),),
-        ("s4-root-places", "e:pdef", "e:defq"),
-    ),
-    claim_4a(
-        "s4-m2-sign",
-        "m2: points of the image with v > 0 go to points with v < 0; they stay in v > 0",
-        Statement(r"q\circ p^{-1}:\{v>0\}\to\{v<0\}", -1),
-        _m2_sign,
-        (0,),
-        ("s4-m2",),
-        lambda: Statement(
-            r"q\circ p^{-1}:\{v>0\}\to\{v>0\},\ \sigma\mapsto(m_2-\tfrac12)\sigma\ \text{changes sign}", 1
-        ),
-    ),
-    claim_4a(
-        "s4-m3",
-        "m3: for t > 0 p and q map the ray into v > 0 with one orientation, and m3 grows from 1/2 to 3/2 with r",
-        Statement(r"\tfrac12<m_3<\tfrac32,\quad m_3\nearrow\ \text{as}\ r\nearrow", (HALF, THREE_HALVES)),
-        ray_m3,
-        ((HALF, sympy.Integer(2)), (sympy.Integer(0), THREE_HALVES)),
-        ("s4-root-places", "e:pdef", "e:defq"),
-    ),
-)
+RAYS = {
+    "s4-m1": Encoding((-1, -1), _line(-sympy.oo, -THREE_HALVES), ((1, -1), (-1, 1))),
+    "s4-m1-gradient": Encoding((m - THREE_HALVES, -3), _gradient, ((m + THREE_HALVES, -3), (m - THREE_HALVES, -2))),
+    "s4-m2": Encoding((-1, 1), _line(sympy.Integer(0), HALF), ((1, 1),)),
+    "s4-m2-sign": Encoding(-1, _m2_sign, (0,), lambda: 1),
+    "s4-m3": Encoding((HALF, THREE_HALVES), ray_m3, ((HALF, sympy.Integer(2)), (sympy.Integer(0), THREE_HALVES))),
+}
 
 
 _ON_FORM3 = (2 * m + 3) ** 2 / (8 * m**2 * (2 * m - 1))
@@ -247,97 +208,51 @@ def _tangent(stated: tuple[sympy.Expr, int]) -> Check:
     )
 
 
-MULTIPLIERS = (
-    claim_4a(
-        "s4-Dh-form",
-        "Dh'(0, m) is lower triangular with m - 1/2 and N_r(m)",
-        Statement(
-            r"Dh'(0,m)=\begin{pmatrix}m-\tfrac12&0\\ *&N_r(m)\end{pmatrix}", sympy.Matrix([[m - HALF, 0], [0, _FORM2]])
-        ),
+MULTIPLIERS = {
+    "s4-Dh-form": Encoding(
+        sympy.Matrix([[m - HALF, 0], [0, _FORM2]]),
         _jacobian,
         (
             sympy.Matrix([[m + HALF, 0], [0, _FORM2]]),
             sympy.Matrix([[m - HALF, 0], [0, -_FORM2]]),
             sympy.Matrix([[m - HALF, 1], [0, _FORM2]]),
         ),
-        ("s4-blowup", "s4-Nr-2"),
     ),
-    claim_4a(
-        "s4-Nr-2",
-        "N_r(m) over one denominator",
-        Statement(r"N_r(m)=r(2m+3)(2m-1)^{-2}Q^{-\frac12}", _FORM2),
+    "s4-Nr-2": Encoding(
+        _FORM2,
         _N_r,
         (r * (2 * m - 3) / (2 * m - 1) ** 2 / sympy.sqrt(Q), r * (2 * m + 3) / (2 * m - 1) / sympy.sqrt(Q)),
-        ("s4-Nr-1",),
     ),
-    claim_4a(
-        "s4-Nr-1",
-        "N_r(m) = dm'/dm at s = 0, as differentiated",
-        Statement(
-            r"N_r(m)=Q^{-\frac12}\bigl(\tfrac12(m-\tfrac12)^{-1}[r(4m-3)+\tfrac92(m-\tfrac12)]-Q(m-\tfrac12)^{-2}\bigr)",
-            _FORM1,
-        ),
-        _N_r,
-        (-_FORM1, _FORM1 + 2 * sympy.sqrt(Q) / (m - HALF) ** 2),
-        ("s4-blowup",),
-    ),
-    claim_4a(
-        "s4-Nr-3-all",
-        "the third form of N_r at every solution of e:fixm; at m = 3/2 it fails",
-        Statement(
-            r"N_r(m)=\frac{(2m+3)^2}{8m^2(2m-1)}\ \text{for every solution of}\ Q_r(1,m)=m^2(m-\tfrac12)^2",
-            (_ON_FORM3, "all"),
-        ),
+    "s4-Nr-1": Encoding(_FORM1, _N_r, (-_FORM1, _FORM1 + 2 * sympy.sqrt(Q) / (m - HALF) ** 2)),
+    "s4-Nr-3-all": Encoding(
+        (_ON_FORM3, "all"),
         _N_r_form,
         ((-_ON_FORM3, "all"), (-_ON_FORM3, "m1, m3")),
-        ("e:fixm", "s4-Nr-2", "s4-Nr-3"),
         lambda: Statement(
-            rf"N_r(m)={latex(fold.N_r_at_fixed_points())}\ \text{{at the roots of the cubic with}}\ m(m-\tfrac12)>0",
+            f"N_r(m)={latex(fold.N_r_at_fixed_points())}\\ \\text{{at the roots of the cubic with}}\\ m(m-\\tfrac12)>0",
             (fold.N_r_at_fixed_points(), "m1, m3"),
         ),
     ),
-    claim_4a(
-        "s4-Nr-3",
-        "the third form of N_r at m1 and m3",
-        Statement(r"N_r(m)=\frac{(2m+3)^2}{8m^2(2m-1)}", (_ON_FORM3, "m1, m3")),
+    "s4-Nr-3": Encoding(
+        (_ON_FORM3, "m1, m3"),
         _N_r_form,
         ((_ON_FORM3 / 2, "m1, m3"), ((2 * m - 3) ** 2 / (8 * m**2 * (2 * m - 1)), "m1, m3")),
-        ("s4-Nr-2", "e:meq", "s4-root-places"),
     ),
-    claim_4a(
-        "s4-saddle-m3",
-        "0 < lambda < 1 < mu for 0 < r < 1, with the limits as r -> 0 and r -> 1",
-        Statement(
-            r"0<\lambda<1<\lambda',\quad(\lambda,\lambda')\to(0,\infty)\ (r\to0),\quad(\lambda,\lambda')\to(1,1)\ (r\to1)",
-            (sympy.Integer(0), sympy.zoo, sympy.Integer(1), sympy.Integer(1)),
-        ),
+    "s4-saddle-m3": Encoding(
+        (sympy.Integer(0), sympy.zoo, sympy.Integer(1), sympy.Integer(1)),
         _saddle,
         (
             (sympy.Integer(0), sympy.Integer(1), sympy.Integer(1), sympy.Integer(1)),
             (sympy.Integer(1), sympy.zoo, sympy.Integer(0), sympy.Integer(1)),
         ),
-        ("s4-Dh-form", "s4-Nr-3", "s4-m3"),
     ),
-    claim_4a(
-        "s4-mu-direction",
-        "the eigendirection of Dh'(0, m3) for the eigenvalue > 1 is the m-axis",
-        Statement(r"\ker(Dh'(0,m_3)-\lambda'I)=\langle(0,1)\rangle", (0, 1)),
-        _direction,
-        ((1, 0), (1, 1)),
-        ("s4-Dh-form", "s4-saddle-m3"),
-    ),
-    claim_4a(
-        "s4-beta-tangent",
-        "chi(W^s) is tangent to the s-axis with eta > 0 for sigma < 0; it is tangent to eta = m3 sigma",
-        Statement(r"\beta=\chi(W^s)\ \text{tangent to}\ \eta=0,\ \eta>0\ \text{for}\ \sigma<0", (sympy.Integer(0), 1)),
+    "s4-mu-direction": Encoding((0, 1), _direction, ((1, 0), (1, 1))),
+    "s4-beta-tangent": Encoding(
+        (sympy.Integer(0), 1),
         _tangent,
         ((sympy.Integer(0), -1), (sympy.Symbol("m_3"), 1)),
-        ("s4-saddle-m3", "s4-m3"),
-        lambda: Statement(
-            r"\beta=\chi(W^s)\ \text{tangent to}\ \eta=m_3\sigma,\ \eta<0\ \text{for}\ \sigma<0",
-            (sympy.Symbol("m_3"), -1),
-        ),
+        lambda: (sympy.Symbol("m_3"), -1),
     ),
-)
+}
 
-CLAIMS = (*RAYS, *MULTIPLIERS)
+CLAIMS = RAYS | MULTIPLIERS

@@ -4,7 +4,7 @@ import sympy
 
 from singimpact.algebra.certificates import negative_on, positive_in, positive_on
 from singimpact.algebra.derivations import At, substitution
-from singimpact.paper.claims.claim import Check, Statement, in_section
+from singimpact.paper.claims.claim import Check, Encoding
 from singimpact.paper.claims.sections.section4_trials import TRIALS as TRIALS
 from singimpact.paper.claims.verifiers import every, identity, is_zero, same
 from singimpact.paper.routes import fold, implicit as route
@@ -334,53 +334,16 @@ def _contracted(stated: sympy.Expr) -> Check:
     )
 
 
-claim_4b = in_section("4.1(b)")
-
-
 _P = -k * (3 * ell + ell**2)
 _Q = -r * k * (3 * ell + 2 * ell**2)
 
-CLAIMS = (
-    claim_4b(
-        "s4b-continuous",
-        "for a' < 0 the horizon lies in v < 0, and F, G are continuous near w_* in v >= 0",
-        Statement(r"v|_H<0\ (\sigma\ne0),\quad F,G\ \text{continuous}", -1),
-        _continuous,
-        (1,),
-        ("s4-horizon-line",),
-    ),
-    claim_4b(
-        "s4b-sector",
-        "F maps a neighbourhood of w_* onto one of the origin in 3 sigma + t >= 0, t >= 0",
-        Statement(r"3\sigma+t\ge0,\ t\ge0", (3, 0)),
-        _sector,
-        ((2, 0), (3, 1)),
-        ("e:pnew",),
-    ),
-    claim_4b(
-        "s4b-T2-bounds",
-        "phi maps that sector onto T'' = {(3/8) a' sigma^2 <= v <= 0, sigma >= 0}",
-        Statement(r"\tfrac38a'\sigma^2\le v\le0,\ \sigma\ge0", sympy.Rational(3, 8)),
-        _image_bounds,
-        (sympy.Rational(1, 8), sympy.Rational(3, 4)),
-        ("e:phinew", "s4b-sector"),
-    ),
-    claim_4b(
-        "s4b-T2-place",
-        "T'' lies in Pi_0^+; it lies in v <= 0",
-        Statement(r"\mathcal T''\subset\Pi_0^+", 1),
-        _half_plane,
-        (0,),
-        ("s4b-T2-bounds",),
-        lambda: Statement(r"\mathcal T''\subset\Pi_0^-", -1),
-    ),
-    claim_4b(
-        "s4b-rays",
-        "p and q on a ray t = l sigma",
-        Statement(
-            r"p=(\sigma,-k(3\ell+\ell^2)\sigma^2+O(\ell\sigma^3)),\ q=(\sigma(1+\ell),-rk(3\ell+2\ell^2)\sigma^2+O(\ell\sigma^3))",
-            (sigma, _P * sigma**2, sigma * (1 + ell), _Q * sigma**2, ell * sigma**3),
-        ),
+CLAIMS = {
+    "s4b-continuous": Encoding(-1, _continuous, (1,)),
+    "s4b-sector": Encoding((3, 0), _sector, ((2, 0), (3, 1))),
+    "s4b-T2-bounds": Encoding(sympy.Rational(3, 8), _image_bounds, (sympy.Rational(1, 8), sympy.Rational(3, 4))),
+    "s4b-T2-place": Encoding(1, _half_plane, (0,), lambda: -1),
+    "s4b-rays": Encoding(
+        (sigma, _P * sigma**2, sigma * (1 + ell), _Q * sigma**2, ell * sigma**3),
         _on_rays,
         (
             (sigma, -_P * sigma**2, sigma * (1 + ell), _Q * sigma**2, ell * sigma**3),
@@ -389,89 +352,34 @@ CLAIMS = (
             (sigma, _P * sigma**2, sigma * (1 + ell), _Q * sigma**2, ell * sigma**4),
             (sigma, _P * sigma**2, sigma * (1 + ell), _Q * sigma**2, sigma**3),
         ),
-        ("e:pnew", "e:phinew", "e:yeq"),
     ),
-    claim_4b(
-        "s4b-l-range",
-        "the rays 0 <= l <= -(9/4) k r cover R T'' under p for every k < 0; for small |k| they do not",
-        Statement(
-            r"0\le\ell\le-\tfrac94kr\ \text{covers}\ 0\le v\le-\tfrac94rk\sigma^2", -sympy.Rational(9, 4) * k * r
-        ),
-        _range,
-        (r / 4, -k * r),
-        ("s4b-rays", "s4b-T2-bounds"),
-        lambda: Statement(
-            r"0\le\ell\le\tfrac34r\ \text{covers}\ 0\le v\le-\tfrac94rk\sigma^2", sympy.Rational(3, 4) * r
-        ),
-    ),
-    claim_4b(
-        "s4b-p-bound",
-        "the lower bound on p~, printed without sigma^2",
-        Statement(r"\tilde p(\sigma)>-k(3\ell+\ell^2)\tfrac13(2+r),\ 0\le\sigma\le\delta", _P * (2 + r) * THIRD),
+    "s4b-l-range": Encoding(-sympy.Rational(9, 4) * k * r, _range, (r / 4, -k * r), lambda: sympy.Rational(3, 4) * r),
+    "s4b-p-bound": Encoding(
+        _P * (2 + r) * THIRD,
         _bound_p,
         (_P * sigma**2, _P * (4 - r) * THIRD * sigma**2),
-        ("s4b-rays",),
-        lambda: Statement(
-            r"\tilde p(\sigma)>-k(3\ell+\ell^2)\tfrac13(2+r)\,\sigma^2,\ 0<\sigma\le\delta",
-            _P * (2 + r) * THIRD * sigma**2,
-        ),
+        lambda: _P * (2 + r) * THIRD * sigma**2,
     ),
-    claim_4b(
-        "s4b-q-bound",
-        "the upper bound on q~; the factor (1+2r)/3 < 1 is on the wrong side, (4-r)/3 serves",
-        Statement(
-            r"\tilde q(\sigma)<-rk(3\ell+2\ell^2)(1+\ell)^{-2}\tfrac13(1+2r)\,\sigma^2",
-            _Q / (1 + ell) ** 2 * (1 + 2 * r) * THIRD * sigma**2,
-        ),
+    "s4b-q-bound": Encoding(
+        _Q / (1 + ell) ** 2 * (1 + 2 * r) * THIRD * sigma**2,
         _bound_q,
         (
             _Q / (1 + ell) ** 2 * sigma**2,
             _Q / (1 + ell) ** 2 * (2 + r) * THIRD * sigma**2,
             _Q / (1 + ell) ** 2 * (5 - r) * THIRD * sigma**2,
         ),
-        ("s4b-rays",),
-        lambda: Statement(
-            r"\tilde q(\sigma)<-rk(3\ell+2\ell^2)(1+\ell)^{-2}\tfrac13(4-r)\,\sigma^2",
-            _Q / (1 + ell) ** 2 * (4 - r) * THIRD * sigma**2,
-        ),
+        lambda: _Q / (1 + ell) ** 2 * (4 - r) * THIRD * sigma**2,
     ),
-    claim_4b(
-        "s4b-conditions",
-        "conditions on delta for the bounds of p~ and q~ on every ray: K delta < K_0, L delta < L_0, both positive",
-        Statement(r"K\delta<-\tfrac13k(3+\ell)(1-r),\quad L\delta<-\tfrac13rk(3+2\ell)(1+\ell)(1-r)", (FOR_K, FOR_L)),
-        _conditions,
-        ((FOR_K / 2, FOR_L), (FOR_K, FOR_L * 2), (FOR_K, -FOR_L)),
-        ("s4b-rays", "s4b-p-bound", "s4b-q-bound"),
-    ),
-    claim_4b(
-        "s4b-ratio",
-        "the bound on q~/p~ that follows; with (1+2r) it fails, with (4-r) it holds",
-        Statement(r"\tilde q/\tilde p<Mr(1+2r)(2+r)^{-1}", M * r * (1 + 2 * r) / (2 + r)),
+    "s4b-conditions": Encoding((FOR_K, FOR_L), _conditions, ((FOR_K / 2, FOR_L), (FOR_K, FOR_L * 2), (FOR_K, -FOR_L))),
+    "s4b-ratio": Encoding(
+        M * r * (1 + 2 * r) / (2 + r),
         _ratio,
         (M * r, M * r * r, M * r * (9 - r) / (2 + r)),
-        ("s4b-p-bound", "s4b-q-bound", "s4b-M"),
-        lambda: Statement(r"\tilde q/\tilde p<Mr(4-r)(2+r)^{-1}", M * r * (4 - r) / (2 + r)),
+        lambda: M * r * (4 - r) / (2 + r),
     ),
-    claim_4b(
-        "s4b-M",
-        "M < 1 for l > 0",
-        Statement(r"M=(3+2\ell)(3+\ell)^{-1}(1+\ell)^{-2}<1", M),
-        _below_one,
-        ((3 + 2 * ell) / (3 + ell), (9 + 2 * ell) / ((3 + ell) * (1 + ell) ** 2)),
+    "s4b-M": Encoding(M, _below_one, ((3 + 2 * ell) / (3 + ell), (9 + 2 * ell) / ((3 + ell) * (1 + ell) ** 2))),
+    "s4b-r-ineq": Encoding(
+        (r * (1 + 2 * r), 2 + r), _r_inequality, ((r * (2 + 2 * r), 2 + r), (2 + r, r * (1 + 2 * r)))
     ),
-    claim_4b(
-        "s4b-r-ineq",
-        "r (1 + 2r) < 2 + r for 0 < r < 1",
-        Statement(r"r(1+2r)<2+r", (r * (1 + 2 * r), 2 + r)),
-        _r_inequality,
-        ((r * (2 + 2 * r), 2 + r), (2 + r, r * (1 + 2 * r))),
-    ),
-    claim_4b(
-        "s4b-Np",
-        "there is N < 1 with q~ < N p~ for small sigma",
-        Statement(r"\tilde q(\sigma)<N\tilde p(\sigma),\ 0<N<1", sympy.Integer(1)),
-        _contracted,
-        (sympy.Integer(0), HALF, sympy.Integer(2)),
-        ("s4b-rays", "s4b-M"),
-    ),
-)
+    "s4b-Np": Encoding(sympy.Integer(1), _contracted, (sympy.Integer(0), HALF, sympy.Integer(2))),
+}

@@ -6,10 +6,10 @@ from typing import Any
 import sympy
 
 from singimpact.algebra.certificates import positive_in
-from singimpact.paper.claims.claim import Check, Statement
+from singimpact.paper.claims.claim import Check, Encoding
 from singimpact.paper.claims.sections import section4_orbits as orbits
 from singimpact.paper.claims.sections.section4_trials import TRIALS as TRIALS
-from singimpact.paper.claims.sections.section4b import claim_4b, vanish_at_launch
+from singimpact.paper.claims.sections.section4b import vanish_at_launch
 from singimpact.paper.claims.verifiers import every, is_zero
 from singimpact.paper.routes import fold
 from singimpact.paper.routes.fold import k
@@ -143,46 +143,14 @@ def _epsilon(stated: tuple[int, sympy.Expr]) -> Check:
     )
 
 
-CLAIMS = (
-    claim_4b(
-        "s4b-contraction",
-        "the iterates G^n(p(alpha)) tend uniformly to the tau-axis",
-        Statement(r"G^n(p(\alpha))\to\Pi_0\ \text{uniformly}", 0),
-        _iterates,
-        (1,),
-        ("s4b-Np", "s4b-sector", "e:phinew"),
-    ),
-    claim_4b(
-        "s4b-back",
-        "for every sigma in [0, delta] the stable manifold extends backwards to tau' < tau_*; not for sigma = 0",
-        Statement(r"W^s_{\tau_*+\sigma}\ni(\tau',0),\ \tau'<\tau_*,\ \sigma\in[0,\delta]", sigma >= 0),
-        _backwards,
-        (sigma < 0, sigma <= 0),
-        ("s4b-contraction", "s4b-continuous", "s4b-sector"),
-        lambda: Statement(r"W^s_{\tau_*+\sigma}\ni(\tau',0),\ \tau'<\tau_*,\ \sigma\in(0,\delta]", sigma > 0),
-    ),
-    claim_4b(
-        "t:foliate",
-        "for a' < 0 a neighbourhood is foliated by arcs of stable manifolds with ends on both sides of tau_*",
-        Statement(r"W^s_\tau,\ \tau>\tau_*:\ \text{ends on}\ \Pi_0\ \text{on opposite sides of}\ \tau_*", (1, -1)),
-        _foliated,
-        ((1, 0), (0, -1)),
-        ("s4b-back",),
-    ),
-    claim_4b(
-        "t:foliate-smooth",
-        "the leaves of that foliation are smooth where v > 0",
-        Statement(r"W^s_\tau\in C^\infty\ \text{at points with}\ v>0", X > 0),
-        _smoothly,
-        (X >= 0, X < 0),
-        ("t:foliate", "s3-takens", "e:pnew", "e:phinew"),
-    ),
-    claim_4b(
-        "s4b-eps",
-        "G takes [w_1, w_*], tau < tau_*, to an arc tangent to Pi_0 at w_* in sigma > 0, v > 0",
-        Statement(r"G([w_1,w_*]):\ v=-\tfrac94rk\sigma^2+O(3),\ \sigma>0", (1, -sympy.Rational(9, 4) * r * k)),
+CLAIMS = {
+    "s4b-contraction": Encoding(0, _iterates, (1,)),
+    "s4b-back": Encoding(sigma >= 0, _backwards, (sigma < 0, sigma <= 0), lambda: sigma > 0),
+    "t:foliate": Encoding((1, -1), _foliated, ((1, 0), (0, -1))),
+    "t:foliate-smooth": Encoding(X > 0, _smoothly, (X >= 0, X < 0)),
+    "s4b-eps": Encoding(
+        (1, -sympy.Rational(9, 4) * r * k),
         _epsilon,
         ((-1, -sympy.Rational(9, 4) * r * k), (1, sympy.Rational(9, 4) * r * k)),
-        ("s4b-sector", "e:phinew"),
     ),
-)
+}

@@ -5,10 +5,10 @@ from typing import Any
 import sympy
 
 from singimpact.algebra.certificates import definite, negative_on, positive_on, roots_inside, value_at
-from singimpact.paper.claims.claim import Check, Statement, in_section
+from singimpact.paper.claims.claim import Check, Encoding, Statement
 from singimpact.paper.claims.sections import section4_orbits as orbits
 from singimpact.paper.claims.sections.section4_trials import TRIALS as TRIALS
-from singimpact.paper.claims.sections.section4a_arc import above_one, limit_in_words, on_gamma, rate_on_gamma
+from singimpact.paper.claims.sections.section4a_arc import above_one, limit_in_words, on_gamma, rate_on_gamma, repelling
 from singimpact.paper.claims.verifiers import every, identity, is_zero
 from singimpact.paper.routes import swan
 from singimpact.paper.routes.implicit import r, v
@@ -36,13 +36,6 @@ def _p(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
             identity(lambda: (s * swan.p_blown_up()[0], ell * s**3 * swan.p_blown_up()[1]))(stated),
         ]
     )
-
-
-def _phi(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
-    """phi in (s, m): launch velocity after the involution."""
-    return identity(
-        lambda: (s * (1 + m), _sheet("phi").subs({sigma: s, t: s * m})), "the launch velocity after the involution"
-    )(stated)
 
 
 def _coordinates(time: sympy.Expr) -> Check:
@@ -233,29 +226,6 @@ def _attracting(stated: tuple[int, int]) -> Check:
     )
 
 
-def _repelling(stated: int) -> Check:
-    """DG at points of gamma: one eigenvalue > 1, not along gamma, in the limit at w_*."""
-    matrix = DG_on_ray(2)
-    at_one = sympy.cancel(1 - matrix.trace() + matrix.det())
-    slope = 3 * leading_coefficient(2)
-    image = matrix * sympy.Matrix([1, slope])
-    turned = sympy.cancel(image[0] * slope - image[1])
-    count = int(negative_on(at_one, lambda_, 0, 1) and positive_on(matrix.det(), lambda_, 0, 1))
-    return every(
-        [
-            *orbits.limit_of_DG(2),
-            (
-                "the characteristic polynomial is negative at 1, positive at 0 and infinity, for every r in (0, 1)",
-                count == stated,
-            ),
-            (
-                "the tangent of gamma is no eigenvector",
-                positive_on(turned, lambda_, 0, 1) or negative_on(turned, lambda_, 0, 1),
-            ),
-        ]
-    )
-
-
 def _limit(stated: sympy.Expr) -> Check:
     """The limit of that eigenvalue along gamma, as a function of lambda."""
     matrix = DG_on_ray(2)
@@ -305,173 +275,51 @@ def _no_impacts(stated: int) -> Check:
     )
 
 
-_claim = in_section("5")
-
-
 _LAUNCH, _IMPACT = 6 * m + 4 * m**2 + m**3, 6 * m + 8 * m**2 + 3 * m**3
 _STAR = sympy.Symbol("*")
 _SLOPE = sympy.diff(r * _IMPACT / (1 + m) ** 3, m) / sympy.diff(_LAUNCH, m)
 
-CLAIMS = (
-    _claim(
-        "s5-coordinates",
-        "the blown-up maps hold with (sigma, eta) = (s, s m); they hold with (sigma, t) = (s, s m)",
-        Statement(r"(\sigma,\eta)=(s,sm),\ \eta=\tfrac32\sigma+t", s * m - 3 * s / 2),
-        _coordinates,
-        (s * m + 3 * s / 2, -s * m),
-        ("e:pdeg3", "s5-phi"),
-        lambda: Statement(r"(\sigma,t)=(s,sm)", s * m),
+CLAIMS = {
+    "s5-coordinates": Encoding(s * m - 3 * s / 2, _coordinates, (s * m + 3 * s / 2, -s * m), lambda: s * m),
+    "e:pdeg3": Encoding(
+        (s, ell * s**3 * _LAUNCH), _p, ((s, -ell * s**3 * _LAUNCH), (s, ell * s**3 * (6 * m + 8 * m**2 + m**3)))
     ),
-    _claim(
-        "e:pdeg3",
-        "p at a swan point in the blown-up coordinates (sigma, t) = (s, s m)",
-        Statement(r"p:(s,m)\mapsto(s,\ \ell s^3(6m+4m^2+m^3+O(s))),\ \ell=-\tfrac1{24}a''", (s, ell * s**3 * _LAUNCH)),
-        _p,
-        ((s, -ell * s**3 * _LAUNCH), (s, ell * s**3 * (6 * m + 8 * m**2 + m**3))),
-        ("e:swan",),
-    ),
-    _claim(
-        "s5-phi",
-        "phi at a swan point in the blown-up coordinates",
-        Statement(r"\phi:(s,m)\mapsto(s(1+m),\ -\ell s^3(6m+8m^2+3m^3+O(s)))", (s * (1 + m), -ell * s**3 * _IMPACT)),
-        _phi,
-        ((s * (1 + m), ell * s**3 * _IMPACT), (s * (1 + m), -ell * s**3 * _LAUNCH)),
-        ("e:swan", "e:phi"),
-    ),
-    _claim(
-        "s5-hbar",
-        "the equation of h-bar",
-        Statement(
-            r"r(6m+8m^2+3m^3)=(1+m)^3(6\bar m+4\bar m^2+\bar m^3)+O(s)",
-            r * _IMPACT - (1 + m) ** 3 * _LAUNCH.subs(m, mbar),
+    "s5-phi": Encoding(
+        (s * (1 + m), -ell * s**3 * _IMPACT),
+        identity(
+            lambda: (s * (1 + m), _sheet("phi").subs({sigma: s, t: s * m})), "the launch velocity after the involution"
         ),
+        ((s * (1 + m), ell * s**3 * _IMPACT), (s * (1 + m), -ell * s**3 * _LAUNCH)),
+    ),
+    "s5-hbar": Encoding(
+        r * _IMPACT - (1 + m) ** 3 * _LAUNCH.subs(m, mbar),
         identity(swan.h_bar),
         (r * _IMPACT - (1 + m) ** 2 * _LAUNCH.subs(m, mbar), -r * _IMPACT - (1 + m) ** 3 * _LAUNCH.subs(m, mbar)),
-        ("e:pdeg3", "s5-phi"),
     ),
-    _claim(
-        "s5-unique",
-        "f and g meet in a single point; m = 0, the axis Pi_0, is a second one",
-        Statement(r"\#\{f=g\}=1", 1),
-        _intersections,
-        (0, 3),
-        ("s5-hbar",),
-        lambda: Statement(r"\{m\in\mathbb R:f(m)=g(m)\}=\{m_*,0\}", 2),
+    "s5-unique": Encoding(1, _intersections, (0, 3), lambda: 2),
+    "s5-mstar-place": Encoding(
+        (sympy.Integer(-1), sympy.Integer(0)), _place, ((-HALF, sympy.Integer(0)), (sympy.Integer(0), sympy.Integer(1)))
     ),
-    _claim(
-        "s5-mstar-place",
-        "the nonzero intersection is unique and lies in (-1, 0) for every r in (0, 1)",
-        Statement(r"-1<m_*<0", (sympy.Integer(-1), sympy.Integer(0))),
-        _place,
-        ((-HALF, sympy.Integer(0)), (sympy.Integer(0), sympy.Integer(1))),
-        ("s5-hbar",),
-    ),
-    _claim("s5-slopes", "f'(m_*) > g'(m_*)", Statement(r"f'(m_*)>g'(m_*)", 1), _slopes, (-1, 0), ("s5-mstar-place",)),
-    _claim(
-        "s5-jacobian",
-        "the Jacobian of h-bar at (0, m_*)",
-        Statement(
-            r"D\bar h(0,m_*)=\begin{pmatrix}1+m_*&0\\ *&f'(m_*)/g'(m_*)\end{pmatrix}",
-            sympy.Matrix([[1 + m, 0], [_STAR, _SLOPE]]),
-        ),
+    "s5-slopes": Encoding(1, _slopes, (-1, 0)),
+    "s5-jacobian": Encoding(
+        sympy.Matrix([[1 + m, 0], [_STAR, _SLOPE]]),
         _jacobian,
         (sympy.Matrix([[1 - m, 0], [_STAR, _SLOPE]]), sympy.Matrix([[1 + m, 0], [_STAR, 1 / _SLOPE]])),
-        ("s5-hbar",),
     ),
-    _claim(
-        "s5-saddle",
-        "(0, m_*) is a hyperbolic saddle for 0 < r < 1 with its unstable manifold in the m-axis",
-        Statement(r"0<1+m_*<1<f'(m_*)/g'(m_*)", (1, 1)),
-        _saddle,
-        ((2, 0), (0, 2)),
-        ("s5-jacobian", "s5-mstar-place", "s5-slopes"),
-    ),
-    _claim(
-        "s5-vt-positive",
-        "for a'' < 0, dv_c/dt > 0 near w_* except at w_*",
-        Statement(r"\partial v_c/\partial t>0\ \text{off}\ w_*,\ a''<0", 1),
-        _positive_slope,
-        (-1,),
-        ("e:swan",),
-    ),
-    _claim(
-        "s5-F-smooth",
-        "for a'' < 0, F is smooth at w_*; it is a homeomorphism with a cube root there",
-        Statement(r"F\ \text{is}\ C^\infty\ \text{at}\ w_*,\ a''<0", 1),
-        _smoothness,
-        (2, 0),
-        ("s5-vt-positive",),
-        lambda: Statement(
-            r"F\ \text{is a homeomorphism near}\ w_*,\ C^\infty\ \text{except at}\ w_*,\ t\sim(-24v/a'')^{1/3}\ \text{on}\ \sigma=0",
-            3,
-        ),
-    ),
-    _claim(
-        "t:t3-unique",
-        "gamma is the only invariant arc in v >= 0 ending at the swan point; Pi_0 is another",
-        Statement(r"\gamma\subset\Pi_0^+\ \text{is the only invariant arc ending at}\ w_*", (v >= 0, 1)),
-        _unique,
-        ((v > 0, 2), (v > 0, 0)),
-        ("s5-saddle", "s5-mstar-place", "s5-unique"),
-        lambda: Statement(
-            r"\gamma\ \text{is the only invariant arc ending at}\ w_*\ \text{with}\ v>0\ \text{off}\ w_*", (v > 0, 1)
-        ),
-    ),
-    _claim(
-        "t:t3",
-        "for a'' < 0 G has an invariant arc gamma, cubically tangent to Pi_0 from tau < tau_*, v > 0",
-        Statement(r"\gamma:\ v\sim C\sigma^3>0,\ \sigma<0", (3, -1)),
-        _exists,
-        ((2, -1), (3, 1)),
-        ("s5-saddle",),
-    ),
-    _claim(
-        "t:t3-smooth",
-        "gamma is smooth up to the swan point, for every r in (0, 1)",
-        Statement(r"\gamma\in C^\infty\ \text{up to}\ w_*", sympy.oo),
-        orbits.smooth(2),
-        (sympy.Integer(2), sympy.Integer(3)),
-        ("t:t3",),
-    ),
-    _claim(
-        "t:t3-attracting",
-        "the swan point is exponentially attracting for G on gamma",
-        Statement(r"\sigma\mapsto\lambda\sigma+O(2)\ \text{on}\ \gamma,\quad0<\lambda<1", (0, 1)),
-        _attracting,
-        ((1, 2), (0, 2)),
-        ("t:t3", "s5-saddle"),
-    ),
-    _claim(
-        "t:t3-repelling",
-        "at points of gamma DG has an eigenvalue > 1 with direction transverse to gamma",
-        Statement(r"\#\{\text{eigenvalues of}\ DG(w)>1\}=1,\ w\in\gamma", 1),
-        _repelling,
-        (0, 2),
-        ("t:t3",),
-    ),
-    _claim(
-        "t:t3-eigenvalue-limit",
-        "that eigenvalue tends to 1 along gamma; for fixed r < 1 its limit is above 1",
-        Statement(r"\lim_{w\to w_*,\,w\in\gamma}\Lambda(w)=1", sympy.Integer(1)),
+    "s5-saddle": Encoding((1, 1), _saddle, ((2, 0), (0, 2))),
+    "s5-vt-positive": Encoding(1, _positive_slope, (-1,)),
+    "s5-F-smooth": Encoding(1, _smoothness, (2, 0), lambda: 3),
+    "t:t3-unique": Encoding((v >= 0, 1), _unique, ((v > 0, 2), (v > 0, 0)), lambda: (v > 0, 1)),
+    "t:t3": Encoding((3, -1), _exists, ((2, -1), (3, 1))),
+    "t:t3-smooth": Encoding(sympy.oo, orbits.smooth(2), (sympy.Integer(2), sympy.Integer(3))),
+    "t:t3-attracting": Encoding((0, 1), _attracting, ((1, 2), (0, 2))),
+    "t:t3-repelling": Encoding(1, repelling(2), (0, 2)),
+    "t:t3-eigenvalue-limit": Encoding(
+        sympy.Integer(1),
         _limit,
         (sympy.Integer(2), lambda_, eigenvalues_on_gamma(2)[1]),
-        ("t:t3-repelling",),
         lambda: Statement(limit_in_words(2), eigenvalues_on_gamma(2)[0]),
     ),
-    _claim(
-        "t:t3-others",
-        "points near w_* off gamma lie on stable manifolds of regular points of Pi_0",
-        Statement(r"w\notin\gamma\Rightarrow w\in W^s_\tau,\ a(\tau)<0", "chatter"),
-        _others,
-        ("lost",),
-        ("t:t3",),
-    ),
-    _claim(
-        "s5-positive",
-        "for a'' > 0, v_c < 0 for small t > 0, so no low-velocity impacts follow",
-        Statement(r"v_c(\tau,t)<0,\ t>0,\ a''>0", -1),
-        _no_impacts,
-        (1,),
-        ("e:swan",),
-    ),
-)
+    "t:t3-others": Encoding("chatter", _others, ("lost",)),
+    "s5-positive": Encoding(-1, _no_impacts, (1,)),
+}

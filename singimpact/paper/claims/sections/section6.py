@@ -12,7 +12,7 @@ from singimpact.contact.points import tangency_points
 from singimpact.contact.swans import swan_points_over_clearance
 from singimpact.impact_oscillator import linear
 from singimpact.oscillator.model import Oscillator
-from singimpact.paper.claims.claim import Check, Statement, Trial, Trials, at_each, in_section
+from singimpact.paper.claims.claim import Check, Encoding, Trial, Trials, at_each
 from singimpact.paper.claims.sections.section6_exact import epsilon_check
 from singimpact.paper.claims.sections.section6_scaling import at, crossing, persisting, regular_conic, scaling_check
 from singimpact.paper.claims.verifiers import every, is_zero, root_of_line, same
@@ -319,115 +319,33 @@ TRIALS: dict[str, Trials] = {
     "s6p-AB": at_each(true_orbits.MODELS.items, _signs_tried),
 }
 
-claim_6 = in_section("6")
 
-
-CLAIMS = (
-    claim_6(
-        "s6-d",
-        "as c passes c_0 a pair of zeros of a_c is born or dies according to the sign of d = a'' da/dc",
-        Statement(r"\#\{a_c=0\}=2\iff d\,(c-c_0)<0", -1),
-        _birth,
-        (1,),
-    ),
-    claim_6(
-        "s6-scaling",
-        "near a swan, in lengths scaled by H, v_c is that of x'' = 12 kappa (sigma^2 + e) plus O(H), with all derivatives",
-        Statement(
-            r"v_c(H\sigma,Ht)=H^3\bigl(-\kappa t(6\sigma^2+6e+4\sigma t+t^2)+O(H)\bigr),"
-            r"\quad a_c(H\sigma)=12\kappa H^2(e+\sigma^2)+O(H^3)",
-            (WEIGHTS, _universal(4)),
-        ),
+CLAIMS = {
+    "s6-d": Encoding(-1, _birth, (1,)),
+    "s6-scaling": Encoding(
+        (WEIGHTS, _universal(4)),
         scaling_check,
         ((WEIGHTS, _universal(3)), (Weights(1, 2, 3, 2), _universal(4)), (Weights(1, 1, 4, 3), _universal(4))),
-        ("s6-d", "e:yeq"),
     ),
-    claim_6(
-        "s6-c-side",
-        "negative swan: the zeros exist for c > c_0; for the linear oscillator they exist for c < 1",
-        Statement(r"\ddot x+x=\cos2t:\ \text{two zeros near}\ 0\ \text{for}\ c>1", 1),
-        _side,
-        (0,),
-        ("s6-d",),
-        lambda: Statement(r"\ddot x+x=\cos2t:\ d_0>0,\ \text{two zeros near}\ 0\ \text{for}\ c<1", -1),
-    ),
-    claim_6(
-        "s6-lips",
-        "for small H the horizon near an unfolded swan is one closed curve, its image has two cusps",
-        Statement(r"\#\{\text{cusps of}\ P_c\ \text{near}\ w_*\}=2", 2),
-        _lips,
-        (0, 4),
-        ("e:swan", "s6-scaling"),
-    ),
-    claim_6(
-        "s6-a0-typo",
-        "a_0'' is defined as a_{c_0} without primes",
-        Statement(r"a_0''(\tau_*):=a_{c_0}(\tau_*)", 0),
-        _second_derivative,
-        (1,),
-        ("e:swan",),
-        lambda: Statement(r"a_0''(\tau_*):=a_{c_0}''(\tau_*)", 2),
-    ),
-    claim_6(
-        "s6p-none",
-        "positive swan: no low-velocity impacts near it for c <= c_0",
-        Statement(r"v_c(\tau,t)<0\ (t>0),\ c\le c_0", -1),
-        _none,
-        (1,),
-        ("e:swan", "s6-scaling"),
-    ),
-    claim_6(
-        "s6-sections",
-        "the sections for tau >= tau_* are those for tau <= tau_* with t and v reversed",
-        Statement(r"v(-\sigma,-t)=-v(\sigma,t)", -1),
-        _symmetric,
-        (1,),
-        ("e:swan",),
-    ),
-    claim_6(
-        "s6p-AB",
-        "positive swan: near A as for a' > 0, near B as for a' < 0; the signs are the other way round",
-        Statement(r"a'(A)>0,\quad a'(B)<0", (1, -1)),
-        _ends,
-        ((1, 1),),
-        ("s6-d", "s6-scaling"),
-        lambda: Statement(r"a'(A)<0,\quad a'(B)>0", (-1, 1)),
-    ),
-    claim_6(
-        "s6p-BE",
-        "the arc BE of H goes under p to an arc tangent to Pi_0 at B and transverse to it at E', near the swan",
-        Statement(r"dv/d\sigma=0\ \text{at}\ B,\quad24\kappa+O(H)\ \text{at}\ E'", (sympy.Integer(0), 24 * kappa)),
+    "s6-c-side": Encoding(1, _side, (0,), lambda: -1),
+    "s6-lips": Encoding(2, _lips, (0, 4)),
+    "s6-a0-typo": Encoding(0, _second_derivative, (1,), lambda: 2),
+    "s6p-none": Encoding(-1, _none, (1,)),
+    "s6-sections": Encoding(-1, _symmetric, (1,)),
+    "s6p-AB": Encoding((1, -1), _ends, ((1, 1),), lambda: (-1, 1)),
+    "s6p-BE": Encoding(
+        (sympy.Integer(0), 24 * kappa),
         _slopes_of_outline,
         ((24 * kappa, 24 * kappa), (sympy.Integer(0), sympy.Integer(0))),
-        ("s6-lips", "s6-scaling"),
     ),
-    claim_6(
-        "s6p-AE",
-        "phi takes the arc AE of Z to an arc in v <= 0 tangent to Pi_0 at A and transverse at E''",
-        Statement(
-            r"dv/d\sigma=0\ \text{at}\ A,\quad24\kappa+O(H)\ \text{at}\ E'',\quad v\le0",
-            (sympy.Integer(0), 24 * kappa, -1),
-        ),
+    "s6p-AE": Encoding(
+        (sympy.Integer(0), 24 * kappa, -1),
         _slopes_of_reset,
         ((sympy.Integer(0), 24 * kappa, 1), (sympy.Integer(0), sympy.Integer(0), -1)),
-        ("s6p-BE", "s6-scaling"),
     ),
-    claim_6(
-        "s6p-eps",
-        "R(phi(AE)) meets S' in one arc, tangent to Pi_0 at A, whose other end is on the outline, for every r, near the swan",
-        Statement(r"\#(R\phi(AE)\cap p(BE))=1", 1),
-        epsilon_check,
-        (0, 2),
-        ("s6p-BE", "s6p-AE", "s6-scaling"),
-    ),
-    claim_6(
-        "s6p-gamma",
-        "gamma is tangent to Pi_0 at B and transverse to it at its other end, in E'A; in the model, four values of r",
-        Statement(
-            r"B\in\gamma,\quad\emptyset\ne(\gamma\cap\Pi_0)\setminus B\subset(-\sqrt3,-1)\times0\quad"
-            r"(r=\tfrac1{10},\tfrac12,\tfrac7{10},\tfrac9{10})",
-            (RATES, (-SQRT3, sympy.Integer(-1))),
-        ),
+    "s6p-eps": Encoding(1, epsilon_check, (0, 2)),
+    "s6p-gamma": Encoding(
+        (RATES, (-SQRT3, sympy.Integer(-1))),
         _gamma,
         (
             (RATES, (sympy.Integer(-1), sympy.Integer(1))),
@@ -435,6 +353,5 @@ CLAIMS = (
             (RATES, (-SQRT3, sympy.Rational(-13, 10))),
             ((), (-SQRT3, sympy.Integer(-1))),
         ),
-        ("t:t2-exists", "s6p-BE"),
     ),
-)
+}

@@ -5,8 +5,8 @@ from typing import Any
 import sympy
 
 from singimpact.algebra.certificates import negative_on
-from singimpact.paper.claims.claim import Check, Statement
-from singimpact.paper.claims.sections.section6 import TRIALS as TRIALS, claim_6
+from singimpact.paper.claims.claim import Check, Encoding
+from singimpact.paper.claims.sections.section6 import TRIALS as TRIALS
 from singimpact.paper.claims.sections.section6_exact import (
     ADCBA,
     chatter_check,
@@ -198,93 +198,22 @@ def _infinitely(count: int) -> Check:
     )
 
 
-CLAIMS = (
-    claim_6(
-        "s6n-visible",
-        "the visible part of V' is the outside of the loop ADCBA",
-        Statement(r"\text{visible}=V'\setminus\text{inside}(ADCBA)", (ADCBA, 0)),
+CLAIMS = {
+    "s6n-visible": Encoding(
+        (ADCBA, 0),
         visible_check,
         ((ADCBA, 1), ((*ADCBA[:2], ADCBA[2]._replace(side=-ADCBA[2].side)), 0), (ADCBA[:2], 0)),
-        ("s6-lips",),
     ),
-    claim_6(
-        "s6n-corr",
-        "B corresponds to the cusp point D of p, near the swan",
-        Statement(r"\phi(D)=B,\ D\ \text{a cusp point of}\ p", model.D),
-        lambda point: cusp_above(point, model.B, "B"),
-        (model.C, model.E),
-        ("s6-lips", "s6-scaling", "s2-horizon"),
+    "s6n-corr": Encoding(model.D, lambda point: cusp_above(point, model.B, "B"), (model.C, model.E)),
+    "s6n-maps": Encoding(
+        ((-1, 1), (3, 64 * kappa)), _images, (((-1, 3), (3, 64 * kappa)), ((-1, 1), (3, -64 * kappa)))
     ),
-    claim_6(
-        "s6n-maps",
-        "phi takes DA to the interval A''D'' of Pi_0 and DC to an arc with v < 0 ending at C'', near the swan",
-        Statement(r"\phi(DA)=[-1,1]\times0,\quad\phi(C)=(3,64\kappa)+O(H)", ((-1, 1), (3, 64 * kappa))),
-        _images,
-        (((-1, 3), (3, 64 * kappa)), ((-1, 1), (3, -64 * kappa))),
-        ("s6n-corr", "s6-scaling"),
-    ),
-    claim_6(
-        "s6n-shadow-neg",
-        "x-dot < 0 on the shadow arc CD except at D, near the swan",
-        Statement(r"\dot x_c<0\ \text{on}\ CD\setminus D", -1),
-        _shadow_velocity,
-        (1,),
-        ("s6n-corr", "s6-scaling"),
-    ),
-    claim_6(
-        "s6n-cusp",
-        "C'' is a cusp point of P, near the swan",
-        Statement(r"C''=\phi(C)\in\text{cusps}(P)", (3, 64 * kappa)),
-        _cusp,
-        ((3, -64 * kappa),),
-        ("s6-lips", "s6-scaling", "s2-horizon"),
-    ),
-    claim_6(
-        "s6n-AB",
-        "F takes AB to the arc CB of Z, near the swan",
-        Statement(r"F(AB)=CB\subset Z", ((-1, 4), (1, 0))),
-        interval_check,
-        (((-1, 3), (1, 0)), ((-1, 4), (1, 1))),
-        ("s6-lips", "s6-scaling"),
-    ),
-    claim_6(
-        "s6n-X",
-        "A lies on the stable manifold of a regular point X with tau_3 > tau_2, for every r, near the swan",
-        Statement(r"A\in W^s(X),\ X=(\tau_3,0),\ \tau_3>\tau_2", 1),
-        chatter_check,
-        (4, sympy.Rational(16, 5)),
-        ("s6n-AB", "s6-scaling"),
-    ),
-    claim_6(
-        "s6n-tangent",
-        "W^s(X) is tangent to Pi_0 at A",
-        Statement(r"W^s(X):\ v\sim12|\kappa|(\sigma+1)^2\ \text{at}\ A", 2),
-        _tangent,
-        (1,),
-        ("s6n-X",),
-    ),
-    claim_6(
-        "s6n-loops",
-        "G^-1(lambda) is a loop around delta with both ends at A",
-        Statement(r"G^{-1}(\lambda)\ \text{surrounds}\ \delta=AD'", 2),
-        _loop,
-        (1,),
-        ("s6n-X", "s6n-tangent"),
-    ),
-    claim_6(
-        "s6n-accumulate",
-        "the inverse images of delta are arcs tangent to Pi_0 at A that accumulate on gamma",
-        Statement(r"G^{-n}(\delta)\to\gamma", "1/mu"),
-        _accumulation,
-        ("1/lambda",),
-        ("t:t2-exists", "s4-saddle-m3"),
-    ),
-    claim_6(
-        "s7-loops",
-        "nearby stable manifolds have infinitely many loops accumulating on gamma",
-        Statement(r"W^s_\tau:\ \text{a loop around each}\ G^{-n}(\delta)", 2),
-        _infinitely,
-        (3,),
-        ("s6n-loops", "s6n-accumulate"),
-    ),
-)
+    "s6n-shadow-neg": Encoding(-1, _shadow_velocity, (1,)),
+    "s6n-cusp": Encoding((3, 64 * kappa), _cusp, ((3, -64 * kappa),)),
+    "s6n-AB": Encoding(((-1, 4), (1, 0)), interval_check, (((-1, 3), (1, 0)), ((-1, 4), (1, 1)))),
+    "s6n-X": Encoding(1, chatter_check, (4, sympy.Rational(16, 5))),
+    "s6n-tangent": Encoding(2, _tangent, (1,)),
+    "s6n-loops": Encoding(2, _loop, (1,)),
+    "s6n-accumulate": Encoding("1/mu", _accumulation, ("1/lambda",)),
+    "s7-loops": Encoding(2, _infinitely, (3,)),
+}

@@ -6,8 +6,8 @@ from typing import Any
 import sympy
 
 from singimpact.algebra.derivations import At, substitution
-from singimpact.paper.claims.claim import Check, Statement
-from singimpact.paper.claims.sections.section6 import TRIALS as TRIALS, claim_6
+from singimpact.paper.claims.claim import Check, Encoding
+from singimpact.paper.claims.sections.section6 import TRIALS as TRIALS
 from singimpact.paper.claims.sections.section6_negative import cusp_above
 from singimpact.paper.claims.sections.section6_scaling import crossing, persisting
 from singimpact.paper.claims.verifiers import every, is_zero, same
@@ -127,42 +127,24 @@ def _swallowtail(stated: dict[int, tuple[int, int]]) -> Check:
     )
 
 
-REGIONS = (
-    claim_6(
-        "s6-swallowtail",
-        "the two tangency points born at a swan are two cusps of the curve of flights from rest, born in a swallowtail",
-        Statement(
-            r"\#\{\text{cusps}\},\ \#\{\text{crossings}\}:\ (0,0)\ (e>0),\quad(2,1)\ (e<0)", {1: (0, 0), -1: (2, 1)}
-        ),
+REGIONS = {
+    "s6-swallowtail": Encoding(
+        {1: (0, 0), -1: (2, 1)},
         _swallowtail,
         ({1: (0, 0), -1: (2, 0)}, {1: (2, 1), -1: (0, 0)}, {1: (0, 0), -1: (3, 1)}),
-        ("s6-d", "p:corresp", "s6-scaling"),
     ),
-    claim_6(
-        "s6p-regions",
-        "positive swan: S' and S'' are simply connected, each between a graph and an interval of Pi_0",
-        Statement(r"v>0\ \text{on}\ p(BE),\quad v<0\ \text{on}\ \phi(AE)", (1, -1)),
-        _graphs,
-        ((-1, 1), (1, 1)),
-        ("s6p-BE", "s6p-AE", "s6-scaling"),
-    ),
-    claim_6(
-        "s6n-corr-A",
-        "A corresponds to the counterpart of D with t < 0, another cusp point of p",
-        Statement(r"\phi(3,-4)=A,\ (3,-4)\ \text{a cusp point of}\ p", (sympy.Integer(3), -sympy.Integer(4))),
+    "s6p-regions": Encoding((1, -1), _graphs, ((-1, 1), (1, 1))),
+    "s6n-corr-A": Encoding(
+        (sympy.Integer(3), -sympy.Integer(4)),
         lambda point: cusp_above(point, model.A, "A"),
         (model.D, (sympy.Integer(3), sympy.Integer(4))),
-        ("s6n-corr", "s6-scaling"),
     ),
-    claim_6(
-        "s6n-C",
-        "phi has a cusp at C, the flight from rest at A",
-        Statement(r"C=(-1,4)\ \text{is a cusp point of}\ \phi", (-sympy.Integer(1), sympy.Integer(4))),
+    "s6n-C": Encoding(
+        (-sympy.Integer(1), sympy.Integer(4)),
         _cusp_of_phi,
         (model.D, (-sympy.Integer(1), sympy.Integer(3)), (sympy.Integer(0), sympy.sqrt(6))),
-        ("p:phising-cusp", "s6-scaling"),
     ),
-)
+}
 
 
 # Section 6: stable manifolds of an unfolded swan, on true orbits of its universal model.
@@ -228,38 +210,10 @@ def _beyond(stated: tuple[int, int]) -> Check:
     )
 
 
-LEAVES = (
-    claim_6(
-        "s6p-separates",
-        "gamma separates S': below it chatter is complete on AB, above it orbits leave S'",
-        Statement(
-            r"S'\setminus\gamma:\ \text{below: chatter to }AB;\ \text{above: leaves }S'",
-            (True, False),
-        ),
-        _separated,
-        ((False, True), (True, True)),
-        ("s6p-gamma", "s6p-regions", "t:t2-sides"),
-    ),
-    claim_6(
-        "s6n-transverse",
-        "stable manifolds of points to the right of B are transverse to R(D''C'')",
-        Statement(r"W^s_\tau\pitchfork R(D''C''),\quad\tau>\tau_2", -1),
-        _crossed,
-        (1, 0),
-        ("s6n-maps", "t:foliate"),
-    ),
-    claim_6(
-        "s6n-Y",
-        "W^s(Y), Y to the right of X, meets no inverse image of delta, and gains two crossings for each as Y comes to X",
-        Statement(
-            r"W^s(Y)\cap G^{-n}(\delta)=\emptyset,\quad\#\bigl(W^s(Y)\cap\{\sigma=-1.02\}\bigr)\in2\mathbb N\ "
-            r"\text{grows as}\ Y\to X",
-            (-1, 2),
-        ),
-        _beyond,
-        ((1, 2), (-1, 1), (-1, 3)),
-        ("s6n-loops", "s6n-accumulate"),
-    ),
-)
+LEAVES = {
+    "s6p-separates": Encoding((True, False), _separated, ((False, True), (True, True))),
+    "s6n-transverse": Encoding(-1, _crossed, (1, 0)),
+    "s6n-Y": Encoding((-1, 2), _beyond, ((1, 2), (-1, 1), (-1, 3))),
+}
 
-CLAIMS = (*REGIONS, *LEAVES)
+CLAIMS = REGIONS | LEAVES
