@@ -7,7 +7,8 @@ Not here: the key of a function and of its cases (`case_keys`), files in general
 """
 
 import os
-import zipfile
+from abc import abstractmethod
+from collections.abc import Mapping
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
@@ -15,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.case_journal import OTHERS, Journal, Record, require_file, writing
+from singimpact.case_journal import Journal, Record, require_file, writing
 from singimpact.inputs import InputError, shown
 from singimpact.store import require_writable, written
 
@@ -40,11 +41,12 @@ class InMemory:
 
     Attributes
     ----------
-    records : by the first case of each chunk. done : cases with results. dtype, shape : of one result.
-    keyed : whether the cases need a key.
+    records : by the first case of each chunk. parts : results of each chunk that is in memory. done : cases with
+    results. shape : of one result. keyed : whether the cases need a key, and there is a journal.
     """
 
     keyed = False
+    journal: Journal
 
     def __init__(self) -> None:
         self.records: dict[int, Record] = {}
@@ -64,32 +66,101 @@ class InMemory:
                 "arrays of one shape for all cases"
             )
         self._take(record, values)
-        self.records[record.start] = record
-        self.done += record.count
+        self._know(record)
 
     def _take(self, record: Record, values: Array) -> None:
         self.parts[record.start] = values
 
-    def refuse_others(self) -> InputError:
-        """The error for results that belong to something else; never raised of what is in memory alone."""
-        return InputError(OTHERS)
-
-    def expect(self, count: int | None) -> None:
-        """The number of cases that will come, where it is known."""
+    def _know(self, record: Record) -> None:
+        self.records[record.start] = record
+        self.done += record.count
 
     def leave(self) -> None:
         """End before all cases are done: what there is can be taken up again."""
 
     def finish(self) -> Any:
         """All results, in order of the cases."""
-        return self._together()
-
-    def _together(self) -> Array:
         parts = [self.parts[start] for start in sorted(self.parts)]
         return np.concatenate(parts) if parts else np.empty(0)
 
 
-class NpzFile(InMemory):
+class _Output(InMemory):
+    """Results in a file or a store, and the journal of those that are in no whole one.
+
+    Parameters
+    ----------
+    path : of the file. key : of the function. journal : its path.
+    """
+
+    keyed = True
+    kind = "file"
+
+    def __init__(self, path: Path, key: str, journal: Path) -> None:
+        super().__init__()
+        self.path, self.key, self.journal = path, key, Journal(journal, key, path)
+        self.whole = path.exists()
+        try:
+            self._resume(self._loaded() if self.whole else None)
+        except BaseException:
+            self.journal.close()
+            raise
+
+    @abstractmethod
+    def _members(self) -> Mapping[str, Any]:
+        """The key, the chunks, the digests of their cases and the results of a whole file."""
+
+    @abstractmethod
+    def _resume(self, result: Any) -> None:
+        """Take up the results of a whole file, or None, and those of the journal."""
+
+    def _loaded(self) -> Any:
+        """The results of a whole file, whose chunks are then known."""
+        try:
+            members = self._members()
+            key, chunks, cases, result = (members[name] for name in ("key", "chunks", "cases", "result"))
+            if chunks.shape != (len(cases), 2) or chunks.dtype.kind not in "iu" or (chunks[:, 1] < 1).any():
+                raise ValueError(f"chunks of shape {chunks.shape} and type {chunks.dtype}")
+            order = chunks[np.argsort(chunks[:, 0])].astype(float)
+            if (np.diff(order[:, 0], prepend=0) < np.insert(order[:-1, 1], 0, 0)[: len(order)]).any():
+                raise ValueError("chunks that overlap or begin before the first case")
+            if cases.shape[1:] != (DIGEST,) or cases.dtype != np.uint8:
+                raise ValueError(f"cases of shape {cases.shape} and type {cases.dtype}")
+            if result.shape[:1] != (chunks[:, 1].sum(),) or result.dtype.kind not in NUMBERS:
+                raise ValueError(f"results of shape {result.shape} and type {result.dtype}")
+        except Exception as error:
+            refusal = f"output = {shown(str(self.path))} is not a {self.kind} of results ({error}): name another"
+            raise InputError(refusal) from None
+        if str(key) != self.key:
+            raise self.journal.refuse_others()
+        for (start, count), case in zip(chunks.tolist(), cases, strict=True):
+            self._know(Record(start, count, bytes(case).hex()))
+        self.shape = result.shape[1:]
+        return result
+
+    def _index(self) -> dict[str, Array]:
+        """The chunks and the digests of their cases, as a whole file has them."""
+        records = [self.records[start] for start in sorted(self.records)]
+        cases = bytes.fromhex("".join(record.cases for record in records))
+        return {
+            "chunks": np.array([(record.start, record.count) for record in records], dtype=np.int64).reshape(-1, 2),
+            "cases": np.frombuffer(cases, np.uint8).reshape(-1, DIGEST),
+        }
+
+    def add(self, record: Record, values: Array) -> None:
+        """The results of some cases, put into the file or its journal; a file of other things would run code."""
+        if values.dtype.kind not in NUMBERS:
+            raise InputError(
+                f"function gives results of type {values.dtype}, and output= takes numbers: give floats, whole numbers "
+                "or arrays of them, or leave output= out"
+            )
+        super().add(record, values)
+
+    def leave(self) -> None:
+        """Let another process have what there is."""
+        self.journal.close()
+
+
+class NpzFile(_Output):
     """Results in memory and in a journal, which becomes an .npz file when the sweep ends, by an error too.
 
     Parameters
@@ -97,17 +168,20 @@ class NpzFile(InMemory):
     path : of the file. key : of the function.
     """
 
-    keyed = True
-
     def __init__(self, path: Path, key: str) -> None:
-        super().__init__()
-        self.path, self.key = path, key
         require_file(path)
         require_writable(path)
-        if path.exists():
-            self._load()
+        super().__init__(path, key, path.with_name(path.name + ".part"))
+
+    def _members(self) -> Mapping[str, Any]:
+        with self.path.open("rb") as stream:
+            return dict(np.load(stream))
+
+    def _resume(self, result: Any) -> None:
+        if result is not None:
+            ends = np.cumsum([record.count for record in self.records.values()])
+            self.parts = dict(zip(self.records, np.split(result, ends[:-1]), strict=True))
         self.written = self.done
-        self.journal = Journal(path.with_name(path.name + ".part"), key, path)
         for record, content in self.journal.read():
             InMemory.add(self, record, self._read(record, content))
 
@@ -117,96 +191,37 @@ class NpzFile(InMemory):
             if values.shape[:1] != (record.count,) or values.dtype.kind not in NUMBERS:
                 raise ValueError(f"{values.shape} results of {values.dtype} for {record.count} cases")
         except (ValueError, EOFError, OSError, MemoryError, OverflowError) as error:
-            self.journal.close()
             raise InputError(f"{shown(str(self.journal.path))} is damaged ({error}): remove it") from None
         return values
 
     def add(self, record: Record, values: Array) -> None:
-        """The results of some cases, put into the store and into the journal."""
-        require_numbers(values)
-        if record.start not in self.records:
-            super().add(record, values)
-            stream = BytesIO()
-            np.lib.format.write_array(stream, values, allow_pickle=False)
-            self.journal.append(record, stream.getvalue())
-
-    def refuse_others(self) -> InputError:
-        """Results of other cases."""
-        self.journal.close()
-        return InputError(f"output = {shown(str(self.path))} {OTHERS}: name another file")
+        """The results of some cases, put into the journal too."""
+        super().add(record, values)
+        stream = BytesIO()
+        np.lib.format.write_array(stream, values, allow_pickle=False)
+        self.journal.append(record, stream.getvalue())
 
     def leave(self) -> None:
         """Put what there is into the file."""
         try:
             if self.done != self.written:
-                self._write()
+                index = [np.arange(start, start + self.records[start].count) for start in sorted(self.records)]
+                members = {"key": self.key, "index": np.concatenate(index), "result": super().finish(), **self._index()}
+                with written(self.path) as draft, draft.open("wb") as stream:
+                    np.savez(stream, **members)
+                self.written = self.done
         finally:
             self.journal.close()
         with writing(self.path):
             self.journal.path.unlink(missing_ok=True)
 
-    def finish(self) -> Array:
-        """Put all into the file."""
+    def finish(self) -> Any:
+        """Put all into the file; the results, in order of the cases."""
         self.leave()
-        return self._together()
-
-    def _write(self) -> None:
-        records = [self.records[start] for start in sorted(self.records)]
-        index = [np.arange(record.start, record.start + record.count) for record in records]
-        cases = np.array([record.cases for record in records])
-        chunks = np.array([(record.start, record.count) for record in records])
-        with written(self.path) as draft, draft.open("wb") as stream:
-            np.savez(
-                stream,
-                key=np.array(self.key),
-                index=np.concatenate(index),
-                result=self._together(),
-                chunks=chunks,
-                cases=cases,
-            )
-        self.written = self.done
-
-    def _load(self) -> None:
-        try:
-            with self.path.open("rb") as stream:
-                values = np.load(stream)
-                if not hasattr(values, "files"):
-                    raise ValueError("an array, no archive")
-                if str(values["key"]) != self.key:
-                    raise InputError(f"output = {shown(str(self.path))} {OTHERS}: name another file")
-                result, chunks, cases = values["result"], values["chunks"], values["cases"]
-                if cases.ndim != 1 or cases.dtype.kind != "U":
-                    raise ValueError(f"cases of type {cases.dtype}")
-                _check(result.shape, result.dtype, chunks, len(cases))
-        except InputError:
-            raise
-        except (OSError, ValueError, KeyError, EOFError, TypeError, MemoryError, zipfile.BadZipFile) as error:
-            refusal = f"output = {shown(str(self.path))} is not a file of results ({error}): name another"
-            raise InputError(refusal) from None
-        ends = np.cumsum(chunks[:, 1])
-        for (start, count), end, case in zip(chunks.tolist(), ends.tolist(), cases.tolist(), strict=True):
-            InMemory.add(self, Record(start, count, str(case)), result[end - count : end])
+        return super().finish()
 
 
-def _check(shape: tuple[int, ...], dtype: np.dtype[Any], chunks: Array, cases: int) -> None:
-    """Whether results of a shape and type can be those of some chunks of cases, each with a digest.
-
-    Raises
-    ------
-    ValueError : they cannot.
-    """
-    if chunks.ndim != 2 or chunks.shape[1:] != (2,) or chunks.dtype.kind not in "iu" or (chunks[:, 1] < 1).any():
-        raise ValueError(f"chunks of shape {chunks.shape} and type {chunks.dtype}")
-    order = chunks[np.argsort(chunks[:, 0])].astype(float)
-    if (chunks[:, 0] < 0).any() or (order[1:, 0] < order[:-1].sum(axis=1)).any():
-        raise ValueError("chunks that overlap or begin before the first case")
-    if not shape or shape[0] != chunks[:, 1].sum() or cases != len(chunks):
-        raise ValueError(f"results of shape {shape} for {chunks[:, 1].sum()} cases")
-    if dtype.kind not in NUMBERS:
-        raise ValueError(f"results of type {dtype}")
-
-
-class ZarrStore(InMemory):
+class ZarrStore(_Output):
     """Results in a Zarr store alone: memory holds one chunk of cases, and a record of those that are done.
 
     Parameters
@@ -214,56 +229,44 @@ class ZarrStore(InMemory):
     path : of the store, a folder. key : of the function.
     """
 
-    keyed = True
+    kind = "store"
 
     def __init__(self, path: Path, key: str) -> None:
-        super().__init__()
-        self.zarr = require_zarr(path)
-        self.path, self.key, self.part = path, key, path.with_name(path.name + ".part")
-        self.whole, self.total = path.exists(), 0
-        self.array: Any = None
-        self.dtype = np.dtype(float)
-        if self.whole:
-            self._load()
-        self.journal = Journal(self.part / "journal", key, path)
-        if not self.whole:
+        try:
+            import zarr
+        except ImportError:
+            raise InputError(
+                f"output = {shown(str(path))} needs zarr, which is not installed: python -m pip install "
+                "'singimpact[cluster]', or name an .npz file"
+            ) from None
+        if not os.access(path.parent, os.W_OK | os.X_OK):
+            raise InputError(f"output = {shown(str(path))} cannot be written: give a place that can")
+        self.zarr, self.part = zarr, path.with_name(path.name + ".part")
+        self.array: Any = None  # of the results, while they are written
+        super().__init__(path, key, self.part / "journal")
+
+    def _members(self) -> Mapping[str, Any]:
+        group: Any = self.zarr.open_group(self.path, mode="r")
+        chunks, cases = group["chunks"][:], group["cases"][:]
+        return {"key": group.attrs["key"], "chunks": chunks, "cases": cases, "result": group["result"]}
+
+    def _resume(self, result: Any) -> None:
+        if result is None:
             for record, _ in self.journal.read():
                 self._know(record)
             if self.records:
                 self._open()
-        require_place(path)
-
-    def _know(self, record: Record) -> None:
-        self.records[record.start] = record
-        self.done += record.count
-
-    def _load(self) -> None:
-        try:
-            group = self.zarr.open_group(self.path, mode="r")
-            key, chunks, cases = group.attrs["key"], group["chunks"][:], group["cases"][:]
-            self.shape, self.dtype = group["result"].shape[1:], group["result"].dtype
-            if cases.ndim != 2 or cases.shape[1] != DIGEST or cases.dtype != np.uint8:
-                raise ValueError(f"cases of shape {cases.shape} and type {cases.dtype}")
-            _check(group["result"].shape, self.dtype, chunks, len(cases))
-        except Exception as error:
-            message = f"output = {shown(str(self.path))} is not a store of results ({error}): name another"
-            raise InputError(message) from None
-        if key != self.key:
-            raise self.refuse_others()
-        for (start, count), case in zip(chunks.tolist(), cases, strict=True):
-            self._know(Record(start, count, bytes(case).hex()))
 
     def _open(self) -> None:
         try:
             self.array = self.zarr.open_group(self.part, mode="r+")["result"]
-            cases = max((record.start + record.count for record in self.records.values()), default=0)
+            cases = max(record.start + record.count for record in self.records.values())
             if self.array.dtype.kind not in NUMBERS or self.array.shape[0] < cases:
                 raise ValueError(f"results of shape {self.array.shape} and type {self.array.dtype}")
         except Exception as error:
-            self.journal.close()
             refusal = f"{shown(str(self.part))} is damaged ({error}): remove it, or name another output"
             raise InputError(refusal) from None
-        self.shape, self.dtype = self.array.shape[1:], self.array.dtype
+        self.shape = self.array.shape[1:]
 
     def _reopen(self) -> None:
         """Go on with a store that was whole; its journal is there before it loses its name."""
@@ -279,51 +282,32 @@ class ZarrStore(InMemory):
         self._open()
 
     def _begin(self, values: Array) -> None:
-        """Make the store, or go on with one that was whole and is given more cases."""
-        if self.whole:
-            self._reopen()
-            return
-        row = max(1, values.nbytes // max(1, len(values)))
-        rows = max(1, min(FILES.rows, FILES.bytes // row))
-        group = self.zarr.open_group(self.part, mode="a")
-        self.dtype = values.dtype
-        self.array = group.create_array(
+        """Make the store."""
+        rows = max(1, min(FILES.rows, FILES.bytes // max(1, values[:1].nbytes)))
+        self.array = self.zarr.open_group(self.part, mode="a").create_array(
             "result",
-            shape=(max(self.total, len(values)), *values.shape[1:]),
+            shape=values.shape,
             chunks=(rows, *(max(1, side) for side in values.shape[1:])),
             dtype=values.dtype,
             overwrite=True,
         )
 
     def _take(self, record: Record, values: Array) -> None:
-        require_numbers(values)
         with writing(self.path):
+            if self.whole:
+                self._reopen()
             if self.array is None:
                 self._begin(values)
-            if not np.can_cast(values.dtype, self.dtype, "safe"):
+            if not np.can_cast(values.dtype, self.array.dtype, "safe"):
                 raise InputError(
-                    f"results of case {record.start} are {values.dtype}, those before {self.dtype}: give one type for "
-                    "all cases, as float(...) does"
+                    f"results of case {record.start} are {values.dtype}, those before {self.array.dtype}: give one "
+                    "type for all cases, as float(...) does"
                 )
             end = record.start + record.count
             if end > self.array.shape[0]:
-                self.array.resize((max(self.total, end, 2 * self.array.shape[0]), *values.shape[1:]))
+                self.array.resize((max(end, 2 * self.array.shape[0]), *values.shape[1:]))
             self.array[record.start : end] = values
         self.journal.append(record)
-
-    def refuse_others(self) -> InputError:
-        """Results of other cases."""
-        if hasattr(self, "journal"):
-            self.journal.close()
-        return InputError(f"output = {shown(str(self.path))} {OTHERS}: name another")
-
-    def expect(self, count: int | None) -> None:
-        """The length of the array, when it is known."""
-        self.total = count or 0
-
-    def leave(self) -> None:
-        """The store stays a `.part`."""
-        self.journal.close()
 
     def finish(self) -> Any:
         """Give the store its name; the array, which is read when it is indexed."""
@@ -337,13 +321,10 @@ class ZarrStore(InMemory):
     def _complete(self) -> None:
         if self.array is None:
             self._begin(np.empty(0))
+        self.array.resize((self.done, *self.array.shape[1:]))
         group = self.zarr.open_group(self.part, mode="r+")
-        self.array.resize((self.done, *(self.shape or ())))
-        records = [self.records[start] for start in sorted(self.records)]
-        chunks = np.array([(record.start, record.count) for record in records], dtype=np.int64).reshape(-1, 2)
-        cases = np.array([list(bytes.fromhex(record.cases)) for record in records], dtype=np.uint8).reshape(-1, DIGEST)
-        group.create_array("chunks", data=chunks, overwrite=True)
-        group.create_array("cases", data=cases, overwrite=True)
+        for name, data in self._index().items():
+            group.create_array(name, data=data, overwrite=True)
         group.attrs["key"] = self.key
         os.rename(self.part, self.path)
         self.whole = True
@@ -360,35 +341,3 @@ def kept(output: str | Path | None, key: str | None) -> InMemory:
         return InMemory()
     path = Path(output)
     return ZarrStore(path, key) if path.suffix == ".zarr" else NpzFile(path, key)
-
-
-def require_zarr(path: Path) -> Any:
-    """The library that reads and writes stores.
-
-    Raises
-    ------
-    InputError : it is not installed.
-    """
-    try:
-        import zarr
-    except ImportError:
-        raise InputError(
-            f"output = {shown(str(path))} needs zarr, which is not installed: python -m pip install "
-            "'singimpact[cluster]', or name an .npz file"
-        ) from None
-    return zarr
-
-
-def require_place(path: Path) -> None:
-    """Refuse a folder in which no store can be made."""
-    if not os.access(path.parent, os.W_OK | os.X_OK):
-        raise InputError(f"output = {shown(str(path))} cannot be written: give a place that can")
-
-
-def require_numbers(values: Array) -> None:
-    """Refuse results that are no numbers: a file of them would run code when it is read."""
-    if values.dtype.kind not in NUMBERS:
-        raise InputError(
-            f"function gives results of type {values.dtype}, and output= takes numbers: give floats, whole numbers or "
-            "arrays of them, or leave output= out"
-        )

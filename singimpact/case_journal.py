@@ -39,7 +39,7 @@ class Journal:
 
     def __init__(self, path: Path, key: str, output: Path) -> None:
         require_file(path)
-        self.path, self.key, self.output = path, key, output
+        self.path, self.head, self.output = path, HEAD + key.encode() + b"\n", output
         self._stream: BinaryIO | None = None
 
     def read(self) -> Iterator[tuple[Record, bytes]]:
@@ -47,21 +47,24 @@ class Journal:
         if not self.path.exists():
             return
         stream = self._opened()
-        head = stream.readline()
-        if not head.endswith(b"\n"):
-            stream.truncate(0)
-        elif not head.startswith(HEAD):
-            self.close()
-            raise InputError(f"{shown(str(self.path))} is not a journal of a sweep: remove it, or name another output")
-        elif head != HEAD + self.key.encode() + b"\n":
-            self.close()
-            raise InputError(f"output = {shown(str(self.output))} {OTHERS} (in {self.path.name}): name another file")
-        end = stream.seek(0, os.SEEK_CUR) if head.endswith(b"\n") else 0
-        while (record := _record(stream)) is not None:
+        head, end = stream.readline(), 0
+        if head.endswith(b"\n"):
+            if not head.startswith(HEAD):
+                raise InputError(
+                    f"{shown(str(self.path))} is not a journal of a sweep: remove it, or name another output"
+                )
+            if head != self.head:
+                raise self.refuse_others()
             end = stream.tell()
-            yield record
+            while (record := _record(stream)) is not None:
+                end = stream.tell()
+                yield record
         stream.seek(end)
         stream.truncate()
+
+    def refuse_others(self) -> InputError:
+        """The error for results that belong to something else."""
+        return InputError(f"output = {shown(str(self.output))} {OTHERS}: name another file")
 
     def append(self, record: Record, content: bytes = b"") -> None:
         """Write a record; it is there when this returns, whatever becomes of this process."""
@@ -69,9 +72,7 @@ class Journal:
         head = f"{record.start} {record.count} {record.cases} {len(content)} ".encode()
         line = head + f"{zlib.crc32(content, zlib.crc32(head)):08x}\n".encode()
         with writing(self.output):
-            if not stream.tell():
-                stream.write(HEAD + self.key.encode() + b"\n")
-            stream.write(line + content)
+            stream.write((b"" if stream.tell() else self.head) + line + content)
             stream.flush()
 
     def close(self) -> None:
@@ -84,37 +85,31 @@ class Journal:
     def _opened(self) -> BinaryIO:
         if self._stream is None:
             with writing(self.output):
-                stream = os.fdopen(
+                self._stream = os.fdopen(
                     os.open(self.path, os.O_RDWR | os.O_CREAT | getattr(os, "O_BINARY", 0), 0o666), "r+b"
                 )
-            if not lock(stream.fileno()):
-                stream.close()
+            if not lock(self._stream.fileno()):
+                self.close()
                 raise InputError(
                     f"output = {shown(str(self.output))} is being written by another process: name another file"
                 )
-            self._stream = stream
         return self._stream
 
 
 def _record(stream: BinaryIO) -> tuple[Record, bytes] | None:
     """The next record, or None at the end and at what is not whole."""
     line = stream.readline()
-    cells = line.split()
-    if not line.endswith(b"\n") or len(cells) != 5:
-        return None
+    left = os.fstat(stream.fileno()).st_size - stream.tell()
     try:
-        start, count, size, check = int(cells[0]), int(cells[1]), int(cells[3]), int(cells[4], 16)
+        first, many, cases, length, check = line.decode("ascii").split()
+        start, count, size, checksum = int(first), int(many), int(length), int(check, 16)
     except ValueError:
         return None
-    here = stream.tell()
-    if min(start, count, size) < 0 or max(start, count) >= MOST or size > stream.seek(0, os.SEEK_END) - here:
+    if min(start, count, size) < 0 or max(start, count) >= MOST or size > left or not line.endswith(b"\n"):
         return None
-    stream.seek(here)
     content = stream.read(size)
-    head = line[: line.rindex(b" ") + 1]
-    if len(content) != size or zlib.crc32(content, zlib.crc32(head)) != check:
-        return None
-    return Record(start, count, cells[2].decode("ascii", "replace")), content
+    whole = zlib.crc32(content, zlib.crc32(line[: line.rindex(b" ") + 1])) == checksum
+    return (Record(start, count, cases), content) if whole else None
 
 
 @contextmanager

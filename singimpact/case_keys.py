@@ -17,43 +17,64 @@ import os
 import pkgutil
 import sys
 import types
+from collections import Counter, OrderedDict, defaultdict, deque
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from operator import methodcaller
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from singimpact.case_names import (
     MISSING,
-    REACHING,
-    UNSEEN,
+    PACKAGE,
     Chain,
-    attribute_names,
     chains,
+    codes,
     followed,
     imports,
     is_found_by_name,
     is_installed,
-    is_written_only,
     name_in_library,
-    precision_of,
+    version_of,
 )
 from singimpact.inputs import InputError, shown
 
-DEEPEST = 100  # containers, functions and classes inside one another; Python's stack ends at 200
-PLAIN = {int, float, str, bool}
+DEEPEST = 100  # containers, functions and classes inside one another; Python's stack ends at 300
+PLAIN = {type(None), bool, int, float, complex, str, bytes}
 WAY_OUT = "leave output= out, or give a function that names numbers, text, arrays, dataclasses and functions of modules"
-METHODS = (
-    types.BuiltinFunctionType,
-    types.MethodDescriptorType,
-    types.WrapperDescriptorType,
-    types.MethodWrapperType,
-    types.ClassMethodDescriptorType,
-    types.GetSetDescriptorType,
-    types.MemberDescriptorType,
-)
-"""Written in C: a name stands for the code."""
-OF_CLASSES = {
+IN_C = ("__module__", "__qualname__", "__self__", "__objclass__")  # a name stands for the code
+# Attributes that an object is made of, where they are not what pickle builds it from
+HOLDERS: dict[type, tuple[str, ...]] = {
+    functools.partial: ("func", "args", "keywords"),
+    functools.cached_property: ("func",),
+    functools._lru_cache_wrapper: ("__wrapped__", "cache_parameters"),
+    staticmethod: ("__func__",),
+    classmethod: ("__func__",),
+    property: ("fget", "fset", "fdel"),
+    types.MethodType: ("__func__", "__self__"),
+    types.CellType: ("cell_contents",),
+    types.CodeType: (
+        "co_code",
+        "co_exceptiontable",
+        "co_names",
+        "co_varnames",
+        "co_freevars",
+        "co_flags",
+        "co_consts",
+    ),
+    types.BuiltinFunctionType: IN_C,
+    types.MethodDescriptorType: IN_C,
+    types.WrapperDescriptorType: IN_C,
+    types.MethodWrapperType: IN_C,
+    types.ClassMethodDescriptorType: IN_C,
+    types.GetSetDescriptorType: IN_C,
+    types.MemberDescriptorType: IN_C,
+}
+# Attributes of classes that decide nothing, or that repeat others
+NOT_OF_CLASSES = {
     "__abstractmethods__",
     "__annotate__",
     "__annotate_func__",
@@ -67,13 +88,13 @@ OF_CLASSES = {
     "__module__",
     "__orig_bases__",
     "__parameters__",
+    "__slotnames__",
     "__static_attributes__",
     "__type_params__",
     "__weakref__",
     "_abc_impl",
 }
-"""Attributes of classes that decide nothing, or that repeat others."""
-OF_MODULES = {
+NOT_OF_MODULES = {
     "__annotations__",
     "__builtins__",
     "__cached__",
@@ -83,6 +104,24 @@ OF_MODULES = {
     "__path__",
     "__spec__",
 }
+LOGS = (list, set, dict, deque, bytearray, Counter, OrderedDict, defaultdict)
+# Methods of these that return None: a function that only calls them does not depend on the content
+WRITES = {"append", "appendleft", "add", "extend", "extendleft", "insert", "clear"}
+# Through these a function reaches values that its code does not name
+UNSEEN = (
+    globals,
+    locals,
+    eval,
+    exec,
+    __import__,
+    pkgutil.resolve_name("importlib:import_module"),
+    sys.modules,
+    sys._getframe,
+    os.environ,
+    os.getenv,
+)
+# Attributes that do
+REACHING = {"__globals__", "f_globals", "f_locals", "f_builtins"}
 
 
 def function_key(function: Callable[[Any], Any]) -> str:
@@ -99,11 +138,7 @@ def function_key(function: Callable[[Any], Any]) -> str:
     >>> function_key(times(2)) == function_key(times(2)), function_key(times(2)) == function_key(times(3))
     (True, False)
     """
-    version = sys.modules[__name__.partition(".")[0]].__version__  # of the root, which is there before its rooms
-    digest = _Digest()
-    digest.add("version", version.encode())
-    digest.value(function, 0)
-    return digest.hash.hexdigest()
+    return hashlib.sha256(_Walk().digest([version_of(PACKAGE), function])).hexdigest()
 
 
 def cases_key(cases: Sequence[Any]) -> str:
@@ -118,318 +153,204 @@ def cases_key(cases: Sequence[Any]) -> str:
     >>> cases_key([1.0, 2.0]) == cases_key([1.0, 2.0]), cases_key([1, 2]) == cases_key([1.0, 2.0])
     (True, False)
     """
-    digest = _Digest()
-    if set(map(type, cases)) <= PLAIN:  # the bytes that they give one by one, four times as fast
-        parts = [(type(case).__name__.encode(), repr(case).encode("utf-8", "surrogatepass")) for case in cases]
-        digest.hash.update(b"".join(b"%b %d %b" % (kind, len(text), text) for kind, text in parts))
-    else:
-        for case in cases:
-            digest.value(case, 0)
-            digest.visited.clear()  # whether two cases share an object is no difference
-    return digest.hash.hexdigest()
+    # whether two cases share an object is no difference
+    digests = [_plain(case) if type(case) in PLAIN else _Walk().digest(case) for case in cases]
+    return hashlib.sha256(b"".join(digests)).hexdigest()
 
 
-class _Digest:
-    """A hash of tagged values, each with its length, so that no two lists of values have the same bytes.
+def _plain(value: Any) -> bytes:
+    """The bytes of a number or a text, with their kind and length, so that no two lists of values have the same."""
+    content = value if type(value) is bytes else repr(value).encode("utf-8", "surrogatepass")
+    return b"%b %d %b" % (type(value).__name__.encode(), len(content), content)
 
-    An object that is met again adds the digest of its first visit; one that contains itself adds its depth there.
+
+class _Parts(NamedTuple):
+    """The text and the values that a value is made of; names of the values, where they have some."""
+
+    text: str
+    values: Sequence[Any] = ()
+    names: Sequence[str] = ()
+
+
+def _by_name(text: str, items: Mapping[str, Any]) -> _Parts:
+    """Values by name; their order is no difference."""
+    names = sorted(items)
+    return _Parts(text, [items[name] for name in names], names)
+
+
+@dataclass
+class _Walk:
+    """Digests of values: each is made of a text and of the digests of the values that it is made of.
+
+    An object that is met again has the digest of its first visit; one that contains itself has its depth there.
     """
 
-    def __init__(self) -> None:
-        self.hash = hashlib.sha256()
-        self.visited: dict[int, tuple[Any, bytes]] = {}  # with the object, so that no other one gets its number
-        self.names: list[str] = []  # by which the walk came here, for refusals
+    visited: dict[int, tuple[Any, bytes]] = field(default_factory=dict)  # an object that is held keeps its number
+    names: list[str] = field(default_factory=list)  # by which the walk came here, for refusals
 
-    def add(self, tag: str, content: bytes = b"") -> None:
-        self.hash.update(f"{tag} {len(content)} ".encode() + content)
+    def digest(self, value: Any, name: str = "") -> bytes:
+        """The digest of any value; `name` is its name in the value that it belongs to."""
+        if type(value) in PLAIN:
+            return _plain(value)
+        if id(value) in self.visited:
+            return self.visited[id(value)][1]
+        self.names.append(name)
+        if len(self.names) > DEEPEST:
+            raise self._refused(type(value).__name__, "it is nested too deep")
+        self.visited[id(value)] = value, b"around %d" % len(self.names)
+        parts = value if isinstance(value, _Parts) else self._parts(value)
+        content = hashlib.sha256(_plain(f"{parts.text} {len(parts.values)} {parts.names}"))
+        for inner, label in zip(parts.values, parts.names or [""] * len(parts.values), strict=True):
+            content.update(self.digest(inner, label))
+        self.names.pop()
+        self.visited[id(value)] = value, content.digest()
+        return content.digest()
 
-    def text(self, tag: str, content: str) -> None:
-        self.add(tag, content.encode("utf-8", "surrogatepass"))
-
-    def value(self, value: Any, depth: int) -> None:
-        """Any value."""
-        kind = type(value)
-        if value is None or kind in (bool, int, float, complex, str):
-            self.text(kind.__qualname__, repr(value))
-        elif kind is bytes:
-            self.add("bytes", value)
-        elif id(value) in self.visited:
-            self.add("visited", self.visited[id(value)][1])
-        else:
-            self._visit(value, depth)
-
-    def _visit(self, value: Any, depth: int) -> None:
-        if depth > DEEPEST:
-            raise self._refused(value, "it is nested too deep")
-        outer, self.hash = self.hash, hashlib.sha256()
-        self.visited[id(value)] = value, f"around {depth}".encode()
-        try:
-            self._inside(value, depth + 1)
-        except RecursionError:
-            raise self._refused(value, "it is nested too deep") from None
-        finally:
-            inner, self.hash = self.hash.digest(), outer
-        self.visited[id(value)] = value, inner
-        self.add("visited", inner)
+    def _alone(self, value: Any) -> bytes:
+        """The digest of a value whatever is visited beside it."""
+        return _Walk(dict(self.visited), list(self.names)).digest(value)
 
     def _refused(self, value: Any, reason: str) -> InputError:
-        name = f" ({'.'.join(self.names[-3:])})" if self.names else ""
+        names = list(filter(None, self.names))[-3:]
+        name = f" ({'.'.join(names)})" if names else ""
         return InputError(f"{shown(value)}{name} has no key for stored results, {reason}: {WAY_OUT}")
 
-    def _inside(self, value: Any, depth: int) -> None:
+    def _parts(self, value: Any) -> _Parts:
         kind = type(value)
-        if kind in (list, tuple, set, frozenset, dict, types.MappingProxyType):
-            self._container(value, depth)
-        elif kind is np.ndarray:
-            self._array(value, depth)
-        elif isinstance(value, np.generic) and is_installed(kind.__module__):
-            self.add(f"number {value.dtype!r}", value.tobytes())
-        elif isinstance(value, types.ModuleType):
-            self._module(value, depth)
-        elif isinstance(value, type):
-            self._class(value, depth)
-        elif kind is types.FunctionType:
-            self._function(value, depth)
-        elif kind is types.CodeType:
-            self._code(value, depth)
-        elif kind is types.CellType:
-            self._all("cell", _content(value), depth)
-        elif isinstance(value, METHODS):
-            self._written_in_c(value, depth)
-        elif isinstance(value, np.ufunc):
-            self._universal(value)
-        else:
-            self._wrapper_or_object(value, depth)
-
-    def _all(self, tag: str, values: Sequence[Any], depth: int) -> None:
-        self.add(f"{tag} {len(values)}")
-        for value in values:
-            self.value(value, depth)
-
-    def _named(self, items: Mapping[str, Any], depth: int) -> None:
-        """Values by name; their order is no difference."""
-        self.add(f"names {len(items)}")
-        for name in sorted(items):
-            self.text("name", name)
-            self.names.append(name)
-            self.value(items[name], depth)
-            self.names.pop()
-
-    # ---- data
-
-    def _container(self, value: Any, depth: int) -> None:
-        kind = type(value).__qualname__
-        if isinstance(value, set | frozenset):
-            self.add(kind, b"".join(sorted(self._alone(each, depth) for each in value)))
-        elif isinstance(value, list | tuple):
-            self._all(kind, value, depth)
-        else:
-            self._all(kind, [part for pair in value.items() for part in pair], depth)
-
-    def _alone(self, value: Any, depth: int) -> bytes:
-        """The digest of an element of a set, whatever was visited before it."""
-        digest = _Digest()
-        digest.visited, digest.names = dict(self.visited), list(self.names)
-        digest.value(value, depth)
-        return digest.hash.digest()
-
-    def _array(self, value: np.ndarray[Any, Any], depth: int) -> None:
-        self.text("array", f"{value.dtype!r} {value.dtype.str} {value.shape}")
-        if value.dtype.hasobject or value.dtype.kind == "V":
-            self._all("items", value.ravel().tolist(), depth)
-        else:
-            self.add("bytes", np.ascontiguousarray(value).tobytes())
+        text = _name(kind)
+        if kind in (list, tuple):
+            return _Parts(text, value)
+        if kind in (dict, types.MappingProxyType):
+            return _Parts(text, [item for pair in value.items() for item in pair])
+        if kind in (set, frozenset):
+            return _Parts(text, sorted(map(self._alone, value)))
+        if kind is np.ndarray or (isinstance(value, np.generic) and kind.__module__ == "numpy"):
+            content = value.tolist() if value.dtype.kind in "OVT" else value.tobytes()
+            return _Parts(f"{text} {value.dtype!r} {value.shape}", [content])
+        if isinstance(value, types.ModuleType):
+            return _module(value)
+        if isinstance(value, type):
+            return _class(value)
+        if kind is types.FunctionType:
+            return self._function(value)
+        if kind is types.CellType and value == types.CellType():
+            return _Parts("not bound yet")
+        holder = next((base for base in kind.__mro__ if base in HOLDERS), None)
+        if holder is not None:
+            return _Parts(text, [getattr(value, name, None) for name in HOLDERS[holder]])
+        if is_installed(kind.__module__) and isinstance(getattr(value, "py_func", None), types.FunctionType):
+            return _Parts(text, [value.py_func, getattr(value, "targetoptions", None)])  # numba adds a random number
+        return self._object(value)
 
     # ---- code
 
-    def _function(self, function: types.FunctionType, depth: int) -> None:
-        space = function.__globals__
+    def _function(self, function: types.FunctionType) -> _Parts:
+        space, code, text = function.__globals__, function.__code__, f"function {_name(function)}"
         library = is_installed(space.get("__name__"))
-        self.text("function", _name(function))
         # `functools.wraps` gives what a library made of a function the module of this function
         if library and is_installed(function.__module__) and is_found_by_name(function):
-            self._package(function.__module__)
-            return
-        self.names.append(function.__name__)
-        if library and isinstance(registry := vars(function).get("registry"), types.MappingProxyType):
-            self._all("of singledispatch", [registry], depth)  # the rest of it repeats this, or is a cache
-            self.names.pop()
-            return
-        self._code(function.__code__, depth)
-        self._all("defaults", [function.__defaults__, function.__kwdefaults__], depth)
-        self._all("closure", function.__closure__ or (), depth)
-        self._named(vars(function), depth)
-        if not library:  # a version stands for the names of a package
-            for name in sorted(attribute_names(function.__code__) & REACHING):
-                raise self._refused(function, f"{name} reaches what the code does not name")
-            for chain in sorted(chains(function.__code__)):
-                self._chain(chain, space, depth)
-            package = space.get("__package__") or str(space.get("__name__", "")).rpartition(".")[0]
-            for module, name in sorted(imports(function.__code__, package)):
-                self._imported(module, name, depth)
-        self.names.pop()
+            return _Parts(text, [version_of(function.__module__)])
+        registry = vars(function).get("registry")
+        if library and isinstance(registry, types.MappingProxyType):
+            return _Parts(text, [registry])  # of singledispatch: the rest of it repeats this, or is a cache
+        attributes = _by_name("attributes", vars(function))
+        own = [code, function.__defaults__, function.__kwdefaults__, function.__closure__, attributes]
+        if library:  # a version stands for the names of a package
+            return _Parts(text, own)
+        if names := REACHING.intersection(*(inner.co_names for inner in codes(code))):
+            raise self._refused(function, f"{min(names)} reaches what the code does not name")
+        named = {".".join(chain): self._global(chain, space) for chain in chains(code)}
+        package = space.get("__package__") or str(space.get("__name__", "")).rpartition(".")[0]
+        taken = {f"{module}:{name}": self._imported(module, name, package) for module, name in imports(code)}
+        return _Parts(text, [*own, _by_name("globals", named), _by_name("imports", taken)])
 
-    def _code(self, code: types.CodeType, depth: int) -> None:
-        self.add("code", code.co_code)
-        self.add("handlers", getattr(code, "co_exceptiontable", b""))
-        self.text("names", repr((code.co_names, code.co_varnames, code.co_freevars, code.co_flags)))
-        self._all("constants", code.co_consts, depth)
-
-    def _chain(self, chain: Chain, space: dict[str, Any], depth: int) -> None:
+    def _global(self, chain: Chain, space: Mapping[str, Any]) -> _Parts:
         """A global name with the attributes that follow it."""
-        value, rest, library = followed(chain, space)
-        self.text("global", ".".join(chain))
-        self.names += chain[: len(chain) - len(rest)]
-        self._require_seen(value)
+        value, rest, modules = followed(chain, space)
+        if any(value is unseen for unseen in UNSEEN):
+            raise self._refused(".".join(chain), "it reaches what the code does not name")
+        name = None if isinstance(value, type) else name_in_library(value)
         if value is MISSING:
-            self.add("unbound")
-        elif library:
-            self._of_library(value, rest, depth)
-        elif is_written_only(value, rest):
-            self.add("written only")
-        elif (name := None if isinstance(value, type) else name_in_library(value)) is not None:
-            self.text("library", name)
-            self._package(name)
-        else:
-            self.value(value, depth)
-        del self.names[len(self.names) - len(chain) + len(rest) :]
+            value = _Parts("not bound")
+        elif modules and is_installed(modules[-1].__name__):
+            # numbers, and functions that a program has put in there, count with their values
+            if type(value) not in PLAIN and not _is_put_in(value) and not is_found_by_name(value):
+                value = _Parts(f"library {_name(value)}")
+        elif type(value) in LOGS and rest and rest[0] in WRITES:
+            value = _Parts("written only")
+        elif name is not None:
+            value = _Parts(f"library {name}", [version_of(name)])
+        return _Parts("through", [*(module for module in modules if is_installed(module.__name__)), value])
 
-    def _require_seen(self, value: Any) -> None:
-        if value is os.environ:  # its text has the values of all variables
-            raise self._refused(os, "the environment may change")
-        if any(value is each for each in UNSEEN):
-            raise self._refused(value, "it reaches what the code does not name")
-
-    def _of_library(self, value: Any, rest: Chain, depth: int) -> None:
-        """The text of an object of an installed package: its name and version, if it is the package's own.
-
-        Numbers, and functions that a program has put in there, count with their values.
-        """
-        while isinstance(value, types.ModuleType):
-            self._module(value, depth)
-            if not rest:
-                return
-            value, rest = getattr(value, rest[0], MISSING), rest[1:]
-        self._require_seen(value)
-        if value is None or type(value) in (*PLAIN, complex, bytes) or _is_put_in(value) or is_found_by_name(value):
-            self.value(value, depth)
-        else:
-            self.text("library", _name(value))
-
-    def _imported(self, module: str, name: str, depth: int) -> None:
+    def _imported(self, module: str, name: str, package: str) -> _Parts:
         """A module that a function imports when it is called."""
-        self.text("import", f"{module} {name}")
+        name_of_module = module.lstrip(".")
+        if name_of_module != module:  # relative to the package
+            base = package.rsplit(".", len(module) - len(name_of_module) - 1)[0]
+            module = f"{base}.{name_of_module}".strip(".")
         if is_installed(module) and not name:
-            self._package(module)
-            return
+            return _Parts("version", [version_of(module)])
         try:
-            value: Any = pkgutil.resolve_name(module)
+            value = pkgutil.resolve_name(module)
         except (ImportError, ValueError, AttributeError):
-            self.add("unbound")
-            return
-        self._chain(("module", name) if name else ("module",), {"module": value}, depth)
+            return _Parts("not bound")
+        return self._global(("module", name) if name else ("module",), {"module": value})
 
-    def _module(self, module: types.ModuleType, depth: int) -> None:
-        """An installed package by its name, any other module by all its values."""
-        self.text("module", module.__name__)
-        if is_installed(module.__name__):
-            self._package(module.__name__)
-            return
-        self._named({name: value for name, value in vars(module).items() if name not in OF_MODULES}, depth)
+    # ---- data
 
-    def _class(self, kind: type, depth: int) -> None:
-        self.text("class", _name(kind))
-        if is_installed(kind.__module__) and is_found_by_name(kind):
-            self._package(kind.__module__)
-            self._named({name: member for name, member in vars(kind).items() if _is_put_in(member)}, depth)
-            return
-        self.names.append(kind.__name__)
-        self._all("bases", [*kind.__bases__, type(kind)], depth)
-        self._named({name: value for name, value in vars(kind).items() if name not in OF_CLASSES}, depth)
-        self.names.pop()
-
-    def _written_in_c(self, value: Any, depth: int) -> None:
-        self.text("named", _name(value))
-        owner = getattr(value, "__self__", None)
-        if owner is not None and not isinstance(owner, types.ModuleType):
-            self.value(owner, depth)
-        module = sys.modules.get(getattr(value, "__module__", None) or "")
-        if module is not None and not is_installed(module.__name__) and getattr(module, "__file__", None):
-            self.add("file", hashlib.sha256(Path(str(module.__file__)).read_bytes()).digest())
-
-    def _universal(self, value: np.ufunc) -> None:
-        """A function of numpy or scipy by its name; one made of a Python function hides it."""
-        if not any(vars(module).get(value.__name__) is value for module in list(sys.modules.values())):
+    def _object(self, value: Any) -> _Parts:
+        """An object: the values that pickle builds it from."""
+        kind = type(value)
+        modules = list(sys.modules.values()) if isinstance(value, np.ufunc) else ()
+        if modules and not any(vars(module).get(value.__name__) is value for module in modules):
             raise self._refused(value, "it hides a Python function")
-        self.text("ufunc", value.__name__)
-
-    def _wrapper_or_object(self, value: Any, depth: int) -> None:
-        """The text of an object: its functions where it holds some, else the values that pickle builds it from."""
-        functions: list[Any] | None = None
-        if isinstance(value, functools.partial):
-            functions = [value.func, value.args, value.keywords]
-        elif isinstance(value, types.MethodType):
-            functions = [value.__func__, value.__self__]
-        elif isinstance(value, staticmethod | classmethod):
-            functions = [value.__func__]
-        elif isinstance(value, property):
-            functions = [value.fget, value.fset, value.fdel]
-        elif isinstance(value, functools.cached_property):
-            functions = [value.func]
-        elif isinstance(value, functools._lru_cache_wrapper):
-            functions = [value.__wrapped__, value.cache_parameters()]
-        elif is_installed(type(value).__module__) and isinstance(getattr(value, "py_func", None), types.FunctionType):
-            functions = [value.py_func, getattr(value, "targetoptions", None)]  # of numba, which adds a random number
-        if functions is None:
-            self._object(value, depth)
-        else:
-            self.text("holder", _name(type(value)))
-            self._all("functions", functions, depth)
-
-    def _object(self, value: Any, depth: int) -> None:
+        reduced: Callable[[Any], Any] = copyreg.dispatch_table.get(kind, methodcaller("__reduce_ex__", 2))
         try:
-            parts = value.__reduce_ex__(2)
+            parts = reduced(value)
         except Exception as error:
             raise self._refused(value, str(error)) from None
-        self.value(type(value), depth)
         if isinstance(parts, str):
-            self.text("global", parts)
-            return
+            return _Parts(f"global {parts}", [kind])
         function, arguments, state, items, pairs, *rest = (*parts, None, None, None)[: max(5, len(parts))]
-        self._all("built", [function, arguments], depth)
-        self._dropped(value, state, depth)
+        dropped = _by_name("dropped", self._dropped(value, state))
         state = {} if state is None else state  # of an object whose attributes are not computed yet
         if isinstance(state, dict) and all(isinstance(name, str) for name in state):
-            self._named(
-                {name: attribute for name, attribute in state.items() if not _is_cached(type(value), name)}, depth
-            )
-        else:
-            self.value(state, depth)
+            state = _by_name("state", {name: state[name] for name in state if not _is_cached(kind, name)})
         # iterators of the elements of lists and dicts
-        self._all("items", list(items or ()), depth)
-        self._all("pairs", list(pairs or ()), depth)
-        self._all("rest", rest, depth)
+        return _Parts("object", [kind, function, arguments, dropped, state, [*(items or ())], [*(pairs or ())], rest])
 
-    def _dropped(self, value: Any, state: Any, depth: int) -> None:
+    def _dropped(self, value: Any, state: Any) -> dict[str, bytes]:
         """Attributes that an object of a program leaves out when it is pickled; locks and files are no data."""
+        digests: dict[str, bytes] = {}
         if is_installed(type(value).__module__):
-            return
+            return digests
         slots = copyreg._slotnames(type(value))  # type: ignore[attr-defined]
         held = getattr(value, "__dict__", {}) | {name: getattr(value, name) for name in slots if hasattr(value, name)}
-        parts = [piece for piece in (state if isinstance(state, tuple) else (state,)) if isinstance(piece, dict)]
-        self.add("dropped")
-        for name in sorted(set(held).difference(*parts)):
+        states = [piece for piece in (state if isinstance(state, tuple) else (state,)) if isinstance(piece, dict)]
+        for name in set(held).difference(*states):
             if not _is_cached(type(value), name):
-                try:
-                    content = self._alone(held[name], depth)
-                except InputError:
-                    continue
-                self.add(f"name {name}", content)
+                with suppress(InputError):
+                    digests[name] = self._alone(held[name])
+        return digests
 
-    def _package(self, module: str) -> None:
-        """The version of an installed package, and the precision at which it computes."""
-        version = getattr(sys.modules.get(module.partition(".")[0]), "__version__", "")
-        self.text("version", f"{version} {precision_of(module)}")
+
+def _module(module: types.ModuleType) -> _Parts:
+    """An installed package by its name, any other module by all its values, or by its file if it is written in C."""
+    text, file = f"module {module.__name__}", str(getattr(module, "__file__", None))
+    if is_installed(module.__name__):
+        return _Parts(text, [version_of(module.__name__)])
+    if file.endswith((".so", ".pyd")):
+        return _Parts(text, [Path(file).read_bytes()])
+    return _by_name(text, {name: value for name, value in vars(module).items() if name not in NOT_OF_MODULES})
+
+
+def _class(kind: type) -> _Parts:
+    text = f"class {_name(kind)}"
+    if is_installed(kind.__module__) and is_found_by_name(kind):
+        put_in = {name: member for name, member in vars(kind).items() if _is_put_in(member)}
+        return _Parts(text, [version_of(kind.__module__), _by_name("put in", put_in)])
+    members = {name: member for name, member in vars(kind).items() if name not in NOT_OF_CLASSES}
+    return _Parts(text, [*kind.__bases__, type(kind), _by_name("members", members)])
 
 
 def _is_put_in(value: Any) -> bool:
@@ -437,13 +358,6 @@ def _is_put_in(value: Any) -> bool:
     if isinstance(value, types.FunctionType) and not is_installed(value.__globals__.get("__name__")):
         return True
     return isinstance(value, types.FunctionType | type) and not is_installed(value.__module__)
-
-
-def _content(cell: types.CellType) -> list[Any]:
-    try:
-        return [cell.cell_contents]
-    except ValueError:  # not bound yet
-        return []
 
 
 def _is_cached(kind: type, name: str) -> bool:

@@ -7,13 +7,11 @@ import builtins
 import decimal
 import dis
 import os
-import pkgutil
 import site
 import sys
 import sysconfig
 import types
-from collections import Counter, OrderedDict, defaultdict, deque
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -21,28 +19,22 @@ from typing import Any
 PACKAGE = __name__.partition(".")[0]
 LOADS = {"LOAD_GLOBAL", "LOAD_NAME", "LOAD_FROM_DICT_OR_GLOBALS"}
 ATTRIBUTES = {"LOAD_ATTR", "LOAD_METHOD"}
+# Instructions that may stand between a name and its attribute
 BETWEEN = {"EXTENDED_ARG", "CACHE", "NOP", "PUSH_NULL"}
-"""Instructions that may stand between a name and its attribute."""
-LOGS = (list, set, dict, deque, bytearray, Counter, OrderedDict, defaultdict)
-WRITES = {"append", "appendleft", "add", "extend", "extendleft", "insert", "clear"}
-"""Methods of these that return None: a function that only calls them does not depend on the content."""
-UNSEEN = (
-    globals,
-    locals,
-    eval,
-    exec,
-    __import__,
-    pkgutil.resolve_name("importlib:import_module"),
-    sys.modules,
-    sys._getframe,
-    os.environ,
-    os.getenv,
-)
-"""Through these a function reaches values that its code does not name."""
-REACHING = {"__globals__", "f_globals", "f_locals", "f_builtins"}
-"""Attributes that do."""
 MISSING = object()
 Chain = tuple[str, ...]
+
+
+def codes(code: types.CodeType) -> Iterator[types.CodeType]:
+    """A code and the codes inside it."""
+    yield code
+    for constant in code.co_consts:
+        if isinstance(constant, types.CodeType):
+            yield from codes(constant)
+
+
+def _steps(code: types.CodeType) -> list[dis.Instruction]:
+    return [step for each in codes(code) for step in dis.get_instructions(each) if step.opname not in BETWEEN]
 
 
 def chains(code: types.CodeType) -> set[Chain]:
@@ -53,84 +45,48 @@ def chains(code: types.CodeType) -> set[Chain]:
     >>> sorted(chains(compile("units.scale(v) + len(v)", "<example>", "eval")))
     [('len',), ('units', 'scale'), ('v',)]
     """
-    names: set[Chain] = set()
+    names: set[Chain] = {()}
     chain: Chain = ()
-    for step in dis.get_instructions(code):
-        if step.opname in BETWEEN:
-            continue
+    for step in _steps(code):  # each code ends with an instruction that loads nothing
         if chain and step.opname in ATTRIBUTES:
             chain = (*chain, step.argval)
-            continue
-        if chain:
+        else:
             names.add(chain)
-        chain = (step.argval,) if step.opname in LOADS else ()
-    return names.union(*(chains(constant) for constant in code.co_consts if isinstance(constant, types.CodeType)))
+            chain = (step.argval,) if step.opname in LOADS else ()
+    return names - {()}
 
 
-def attribute_names(code: types.CodeType) -> set[str]:
-    """The global and attribute names of a code and the codes inside it.
+def imports(code: types.CodeType) -> set[tuple[str, str]]:
+    """Modules that a code and the codes inside it import: (module, name taken from it, "" for the module itself).
 
     Examples
     --------
-    >>> sorted(attribute_names(compile("h.__globals__['k']", "<example>", "eval")))
-    ['__globals__', 'h']
+    >>> sorted(imports(compile("import math\\nfrom .units import R", "<example>", "exec")))
+    [('.units', 'R'), ('math', '')]
     """
-    inside = (attribute_names(part) for part in code.co_consts if isinstance(part, types.CodeType))
-    return set(code.co_names).union(*inside)
+    steps = _steps(code)
+    return {
+        ("." * level.argval + step.argval, name)
+        for level, names, step in zip(steps, steps[1:], steps[2:], strict=False)
+        if step.opname == "IMPORT_NAME"
+        for name in names.argval or ("",)
+    }
 
 
-def imports(code: types.CodeType, package: str) -> set[tuple[str, str]]:
-    """Modules that a code and the codes inside it import: (module, name taken from it, "" for the module itself)."""
-    pairs: set[tuple[str, str]] = set()
-    level, module = 0, ""
-    constants: list[Any] = []
-    for step in dis.get_instructions(code):
-        if step.opname in BETWEEN:
-            continue
-        if step.opname == "IMPORT_NAME":
-            level = next((constant for constant in constants[-2:] if isinstance(constant, int)), 0)
-            module = _absolute(step.argval, level, package)
-            pairs.add((module, ""))
-        elif step.opname == "IMPORT_FROM" and module:
-            pairs.discard((module, ""))
-            pairs.add((module, step.argval))
-        elif not step.opname.startswith("STORE"):
-            module = ""
-        constants.append(step.argval)
-    return pairs.union(*(imports(inner, package) for inner in code.co_consts if isinstance(inner, types.CodeType)))
-
-
-def _absolute(name: str, level: int, package: str) -> str:
-    if not level:
-        return name
-    base = package.rsplit(".", level - 1)[0]
-    return f"{base}.{name}" if name else base
-
-
-def followed(chain: Chain, space: dict[str, Any]) -> tuple[Any, Chain, bool]:
-    """The value that a chain of names begins with, after modules that are not installed packages.
+def followed(chain: Chain, space: Mapping[str, Any]) -> tuple[Any, list[str], list[types.ModuleType]]:
+    """The value that a chain of names leads to through modules.
 
     Returns
     -------
-    (value, the attributes that are left, whether it belongs to an installed package); `MISSING` is the value of a name
-    that is not bound.
+    (value, the attributes that are left, the modules); `MISSING` is the value of a name that is not bound.
     """
-    value = space.get(chain[0], MISSING)
-    library = value is MISSING
-    if library:
-        value = getattr(builtins, chain[0], MISSING)
-    rest = chain[1:]
-    while isinstance(value, types.ModuleType) and rest:
-        library = is_installed(value.__name__)
-        if library and not any(vars(value).get(rest[0], MISSING) is prefix for prefix in UNSEEN):
-            return value, rest, True
-        value, rest = getattr(value, rest[0], MISSING), rest[1:]
-    return value, rest, library
-
-
-def is_written_only(value: Any, rest: Chain) -> bool:
-    """Whether a function uses a global container only to write into it, as a log of its calls."""
-    return type(value) in LOGS and bool(rest) and rest[0] in WRITES
+    first, *rest = chain
+    modules = [] if first in space else [builtins]
+    value = space[first] if first in space else getattr(builtins, first, MISSING)
+    while rest and isinstance(value, types.ModuleType):
+        modules.append(value)
+        value = getattr(value, rest.pop(0), MISSING)
+    return value, rest, modules
 
 
 def is_installed(name: Any) -> bool:
@@ -146,20 +102,11 @@ def is_installed(name: Any) -> bool:
     top = name.partition(".")[0]
     if top == PACKAGE:
         return True
-    for module in (name, top):
-        file = _file(sys.modules.get(module))
-        if file is not None:
-            return _is_library(file)
+    for module in map(sys.modules.get, (name, top)):
+        for file in (getattr(module, "__file__", None), *(getattr(module, "__path__", None) or ())):
+            if isinstance(file, str):
+                return _is_library(file)
     return top in sys.builtin_module_names or top in sys.stdlib_module_names
-
-
-def _file(module: Any) -> str | None:
-    file = getattr(module, "__file__", None)
-    if isinstance(file, str):
-        return file
-    folders: Iterator[Any] = iter(getattr(module, "__path__", ()))
-    folder = next(folders, None)
-    return os.path.join(folder, "") if isinstance(folder, str) else None
 
 
 @lru_cache(maxsize=4096)
@@ -171,29 +118,28 @@ def _is_library(file: str) -> bool:
 
 
 @lru_cache(maxsize=1)
-def _library_folders() -> tuple[str, ...]:
+def _library_folders() -> set[str]:
     paths = sysconfig.get_paths()
     roots = [paths[key] for key in ("stdlib", "platstdlib", "purelib", "platlib")]
     roots += [*getattr(site, "getsitepackages", list)(), site.getusersitepackages()]
-    return tuple({place for root in roots for place in (os.path.abspath(root), os.path.realpath(root))})
+    return {*map(os.path.abspath, roots), *map(os.path.realpath, roots)}
 
 
-def precision_of(module: str) -> str:
-    """The digits at which a package computes, where a program sets them for all of it; "" of other packages.
+def version_of(module: str) -> str:
+    """The version of the package of a module, and the digits at which it computes, where a program sets them.
 
     Examples
     --------
-    >>> precision_of("numpy")
-    ''
+    >>> version_of("math"), version_of("json") != version_of("decimal")
+    ('', True)
     """
-    match module.partition(".")[0]:
-        case "mpmath":
-            contexts = [getattr(sys.modules.get("mpmath"), name, None) for name in ("mp", "iv")]
-            return " ".join(str(getattr(context, "prec", "")) for context in contexts)
-        case "decimal" | "_decimal" | "_pydecimal":
-            context = decimal.getcontext()
-            return " ".join(str(getattr(context, name)) for name in ("prec", "rounding", "Emin", "Emax", "clamp"))
-    return ""
+    top = module.partition(".")[0]
+    numbers = [getattr(sys.modules.get(top), "__version__", "")]
+    if top == "mpmath":
+        numbers += [getattr(getattr(sys.modules.get(top), name, None), "prec", "") for name in ("mp", "iv")]
+    if top in ("decimal", "_decimal", "_pydecimal"):
+        numbers += [getattr(decimal.getcontext(), name) for name in ("prec", "rounding", "Emin", "Emax", "clamp")]
+    return " ".join(map(str, numbers))
 
 
 def is_found_by_name(value: Any) -> bool:
@@ -209,8 +155,7 @@ def name_in_library(value: Any) -> str | None:
     module = type(value).__module__
     if module == "builtins" or not is_installed(module):
         return None
-    for name in (module, module.partition(".")[0]):
-        for key, held in vars(sys.modules[name]).items() if name in sys.modules else ():
-            if held is value:
-                return f"{name}.{key}"
-    return None
+    holders = [name for name in (module, module.partition(".")[0]) if name in sys.modules]
+    return next(
+        (f"{name}.{key}" for name in holders for key, held in vars(sys.modules[name]).items() if held is value), None
+    )

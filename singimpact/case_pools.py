@@ -8,6 +8,7 @@ from __future__ import annotations
 import ast
 import os
 import pickle
+import signal
 import sys
 import threading
 import time
@@ -17,7 +18,7 @@ from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from multiprocessing import context, get_context, parent_process, spawn
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -29,25 +30,15 @@ THREADS = "executor=concurrent.futures.ThreadPoolExecutor()"
 
 
 @dataclass(frozen=True)
-class ChunkSettings:
-    """Size at which a worker returns its results before its chunk is complete."""
+class PlaceSettings:
+    """Sizes and times of workers."""
 
-    bytes: int = 1 << 24  # of results; the calling process holds a few chunks of each worker in memory
-
-
-CHUNK = ChunkSettings()
-
-
-@dataclass(frozen=True)
-class ClusterSettings:
-    """Time between two requests for the size of a cluster."""
-
-    interval: float = 1.0  # s; workers come and go while a sweep runs
+    bytes: int = 1 << 24  # of results, at which a worker returns them before its chunk is complete
+    interval: float = 1.0  # s between two requests for the size of a cluster; workers come and go while a sweep runs
+    patience: float = 5.0  # s that the end of a pool waits for its terminated workers
 
 
-CLUSTER = ClusterSettings()
-PATIENCE = 5.0
-"""Seconds that the end of a pool waits for its terminated workers."""
+PLACE = PlaceSettings()
 _OURS: list[bool] = []  # holds an entry in a worker of `WorkerPool`
 
 
@@ -67,18 +58,14 @@ def computed(function: Function, items: Sequence[Any], seconds: float) -> tuple[
                 raise
             break
         size += getattr(values[-1], "nbytes", 0)
-        if time.monotonic() - start > seconds or size > CHUNK.bytes:
+        if time.monotonic() - start > seconds or size > PLACE.bytes:
             break
-    return _stacked(function, values), time.monotonic() - start
-
-
-def _stacked(function: Function, values: list[Any]) -> Array:
     try:
-        return np.asarray(values)
+        return np.asarray(values), time.monotonic() - start
     except ValueError:
-        told = " and ".join(map(str, sorted({np.shape(value) for value in values})[:2]))
+        shapes = " and ".join(map(str, sorted({np.shape(value) for value in values})[:2]))
         raise InputError(
-            f"{named(function)} gives results of shapes {told}: give arrays of one shape for all cases"
+            f"{named(function)} gives results of shapes {shapes}: give arrays of one shape for all cases"
         ) from None
 
 
@@ -100,19 +87,14 @@ def named(function: Any) -> str:
     return f"function = {shown(getattr(inner, '__qualname__', None) or str(inner))}"
 
 
+@dataclass
 class Place:
-    """Threads, or any other executor that takes functions as they are.
+    """Threads, or any other executor that takes functions as they are."""
 
-    Parameters
-    ----------
-    executor : submits, and gives futures with `add_done_callback`.
-    """
-
-    replaceable = False  # by a new pool, when a worker has died
-    reason = ""  # for computing in this process
-
-    def __init__(self, executor: Executor) -> None:
-        self.executor = executor
+    executor: Executor
+    own: bool = False  # made here, and ended after the sweep; a pool of the caller stays open
+    reason: str = ""  # for computing in this process
+    replaceable: ClassVar[bool] = False  # by a new pool, when a worker has died
 
     @property
     def width(self) -> int:
@@ -125,8 +107,8 @@ class Place:
         return self.executor.submit(computed, function, items, seconds)
 
     def opened(self) -> AbstractContextManager[Any]:
-        """A context that ends a pool made here; a pool of the caller stays open."""
-        return nullcontext()
+        """A context that ends a pool made here."""
+        return self.executor if self.own else nullcontext()
 
     def again(self, width: int | None = None) -> Place:
         """A new pool in place of one that has lost a worker."""
@@ -134,35 +116,34 @@ class Place:
         return self
 
 
-class Here(Place):
-    """The calling process, one case after another."""
+class Here(Executor):
+    """The calling process, one task after another; an interruption is raised at once."""
 
-    def __init__(self, reason: str = "") -> None:
-        self.reason = reason
+    _max_workers = 1
 
-    @property
-    def width(self) -> int:
-        """One."""
-        return 1
-
-    def submit(self, function: Function, items: Sequence[Any], seconds: float) -> Future[Any]:
-        """Compute the cases and return the finished future; an interruption is raised at once."""
-        return _done_here(function, items, seconds)
+    def submit(self, function: Callable[..., Any], /, *args: Any, **keywords: Any) -> Future[Any]:
+        """Compute, and return the finished future."""
+        done: Future[Any] = Future()
+        try:
+            done.set_result(function(*args, **keywords))
+        except Exception as error:
+            done.set_exception(error)
+        return done
 
 
 class Cluster(Place):
     """A `dask.distributed.Client`, or the executor that it gives."""
 
     def __init__(self, executor: Any) -> None:
-        self.client = executor if hasattr(executor, "get_executor") else executor._client
         super().__init__(executor.get_executor() if hasattr(executor, "get_executor") else executor)
-        self._known, self._when = 1, -CLUSTER.interval
+        self._known, self._when = 1, -PLACE.interval
 
     @property
     def width(self) -> int:
         """Threads of all workers of the cluster, as many as there are now."""
-        if time.monotonic() - self._when >= CLUSTER.interval:
-            self._known, self._when = max(1, sum(self.client.nthreads().values())), time.monotonic()
+        if time.monotonic() - self._when >= PLACE.interval:
+            threads: dict[str, int] = self.executor._client.nthreads()  # type: ignore[attr-defined]
+            self._known, self._when = max(1, sum(threads.values())), time.monotonic()
         return self._known
 
     def submit(self, function: Function, items: Sequence[Any], seconds: float) -> Future[Any]:
@@ -177,25 +158,16 @@ class Processes(Place):
 
     replaceable = True
 
-    def __init__(self, executor: ProcessPoolExecutor, own: bool = False) -> None:
-        super().__init__(executor)
-        self.own, self.scripted = own, not isinstance(executor, WorkerPool) or executor.script
-
     def submit(self, function: Function, items: Sequence[Any], seconds: float) -> Future[Any]:
         """Begin to compute some cases; cases of a script that the workers have not imported are computed here."""
         payload = _packed(function, items, pickle.dumps)
-        if not self.scripted and b"__main__" in payload:
-            return _done_here(function, items, seconds)
+        if b"__main__" in payload and not getattr(self.executor, "script", True):
+            return Here().submit(computed, function, items, seconds)
         return self.executor.submit(unpacked, payload, seconds)
-
-    def opened(self) -> AbstractContextManager[Any]:
-        """The pool, when it was made here."""
-        return self.executor if self.own else nullcontext()
 
     def again(self, width: int | None = None) -> Place:
         """A new pool that starts its processes as this one does."""
-        count = width or self.width
-        given = self.executor
+        given, count = self.executor, width or self.width
         if isinstance(given, WorkerPool):
             return Processes(WorkerPool(count, given.script), own=True)
         return Processes(ProcessPoolExecutor(count, getattr(given, "_mp_context", None)), own=True)
@@ -233,10 +205,11 @@ def place_of(executor: Any, function: Function, items: Sequence[Any]) -> Place:
 def _usual(function: Function, items: Sequence[Any]) -> Place:
     """A pool of processes; in one of its workers, or where a new process cannot have the function, this process."""
     if _OURS:
-        return Here()
+        return Place(Here())
     of_script = b"__main__" in _packed(function, items, pickle.dumps)
     if of_script and not script_can_be_imported():
-        return Here('the function belongs to a script without `if __name__ == "__main__":`, or to no file')
+        reason = 'the function belongs to a script without `if __name__ == "__main__":`, or to no file'
+        return Place(Here(), reason=reason)
     return Processes(WorkerPool(script=of_script), own=True)
 
 
@@ -265,11 +238,12 @@ def script_can_be_imported() -> bool:
         tree = ast.parse(Path(path).read_bytes())
     except (OSError, SyntaxError, ValueError):
         return False
-    line = frame.f_lineno
-    calls = [
-        statement for statement in tree.body if statement.lineno <= line <= (statement.end_lineno or statement.lineno)
-    ]
-    return any(isinstance(statement, ast.If) and "__name__" in ast.unparse(statement.test) for statement in calls)
+    return any(
+        isinstance(statement, ast.If)
+        and statement.lineno <= frame.f_lineno <= (statement.end_lineno or statement.lineno)
+        and "__name__" in ast.unparse(statement.test)
+        for statement in tree.body
+    )
 
 
 def _packed(function: Function, items: Sequence[Any], dumps: Callable[[Any], bytes]) -> bytes:
@@ -287,15 +261,6 @@ def _packed(function: Function, items: Sequence[Any], dumps: Callable[[Any], byt
             f"cases cannot be sent to other processes ({error}): give numbers, text, arrays or dataclasses, or "
             f"{THREADS}"
         ) from None
-
-
-def _done_here(function: Function, items: Sequence[Any], seconds: float) -> Future[Any]:
-    done: Future[Any] = Future()
-    try:
-        done.set_result(computed(function, items, seconds))
-    except Exception as error:
-        done.set_exception(error)
-    return done
 
 
 class ThreadPool(ThreadPoolExecutor):
@@ -323,8 +288,7 @@ class WorkerPool(ProcessPoolExecutor):
     def __init__(self, workers: int | None = None, script: bool = False) -> None:
         self.script = script
         # a forked child shares locks of threads that it does not have
-        start = _WithScript() if script else _WithoutScript()
-        super().__init__(workers, mp_context=start, initializer=_begin)
+        super().__init__(workers, mp_context=_Start(script), initializer=_begin)
 
     def __exit__(self, kind: Any, *rest: Any) -> bool | None:
         if kind is None:
@@ -336,7 +300,7 @@ class WorkerPool(ProcessPoolExecutor):
         for worker in workers:
             worker.terminate()
         if manager is not None:
-            manager.join(PATIENCE)  # it closes a pipe that the end of the interpreter writes to
+            manager.join(PLACE.patience)  # it closes a pipe that the end of the interpreter writes to
         return None
 
 
@@ -345,8 +309,6 @@ class _Process(context.SpawnProcess):
 
     def start(self) -> None:
         """Start the process with the signal blocked."""
-        import signal
-
         if not hasattr(signal, "pthread_sigmask"):
             super().start()
             return
@@ -355,10 +317,6 @@ class _Process(context.SpawnProcess):
             super().start()
         finally:
             signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-class _WithScript(context.SpawnContext):
-    Process = _Process
 
 
 class _BareProcess(_Process):
@@ -370,9 +328,8 @@ class _BareProcess(_Process):
             usual, thread = spawn.get_preparation_data, threading.get_ident()
 
             def without_script(name: str) -> dict[str, Any]:
-                data = usual(name)
                 ours = threading.get_ident() == thread
-                return {key: value for key, value in data.items() if not (ours and key.startswith("init_main"))}
+                return {key: data for key, data in usual(name).items() if not (ours and key.startswith("init_main"))}
 
             spawn.get_preparation_data = without_script
             try:
@@ -384,13 +341,16 @@ class _BareProcess(_Process):
 _STARTING = threading.Lock()
 
 
-class _WithoutScript(context.SpawnContext):
-    Process = _BareProcess
+class _Start(context.SpawnContext):
+    """Starts processes that import the running script, or do not."""
+
+    def __init__(self, script: bool) -> None:
+        super().__init__()
+        self.Process = _Process if script else _BareProcess  # type: ignore[misc]
 
 
 def _begin() -> None:
     """Make the worker end with the process that started it, which also handles Ctrl-C in the terminal."""
-    import signal
     from multiprocessing.connection import wait
 
     _OURS.append(True)

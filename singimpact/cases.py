@@ -9,14 +9,12 @@ This file is not called `sweep`: importing a module of that name would replace t
 from __future__ import annotations
 
 import time
-from collections import Counter, deque
-from collections.abc import Callable, Iterable, Sized
-from concurrent.futures import BrokenExecutor, CancelledError, Future, wait
-from contextlib import suppress
+from collections import deque
+from collections.abc import Callable, Collection, Iterable, Sized
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Future, wait
 from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import Path
-from queue import Empty, SimpleQueue
 from typing import Any
 
 import numpy as np
@@ -92,7 +90,6 @@ def sweep(
     store = kept(output, None if output is None else function_key(function))
     try:
         count = len(cases) if isinstance(cases, Sized) else None
-        store.expect(count)
         with ProgressLine() as line:
             work = _Work(function, _Source(cases, store), store, line, count)
             work.run(executor)
@@ -123,7 +120,6 @@ class _Source:
     def __init__(self, cases: Iterable[Any], store: InMemory) -> None:
         self.cases, self.store, self.at = iter(cases), store, 0
         self.starts = deque(sorted(store.records))
-        self.known = dict(store.records)
 
     def take(self, size: int) -> _Chunk | None:
         """The next cases without results; None when there are no more.
@@ -132,22 +128,17 @@ class _Source:
         ------
         InputError : results are of other cases.
         """
-        while True:
-            while self.starts and self.starts[0] < self.at:
-                self.starts.popleft()
-            room = self.starts[0] - self.at if self.starts else size
-            if room == 0:
-                record = self.known[self.starts.popleft()]
+        while self.starts and self.starts[0] <= self.at:
+            record = self.store.records[self.starts.popleft()]
+            if record.start == self.at:
                 items = self._next(record.count)
                 if len(items) != record.count or cases_key(items) != record.cases:
-                    raise self.store.refuse_others()
-                continue
-            start, items = self.at, self._next(min(size, room))
-            if items:
-                return _Chunk(start, items)
-            if self.starts:  # fewer cases than results
-                raise self.store.refuse_others()
-            return None
+                    raise self.store.journal.refuse_others()
+        start = self.at
+        items = self._next(min(size, self.starts[0] - start) if self.starts else size)
+        if self.starts and not items:  # fewer cases than results
+            raise self.store.journal.refuse_others()
+        return _Chunk(start, items) if items else None
 
     def _next(self, count: int) -> list[Any]:
         items = list(islice(self.cases, count))
@@ -166,7 +157,6 @@ class _Work:
     count: int | None
     waiting: deque[_Chunk] = field(default_factory=deque)
     running: dict[Future[Any], _Chunk] = field(default_factory=dict)
-    ended: SimpleQueue[Future[Any]] = field(default_factory=SimpleQueue)
     fatal: list[tuple[int, Any]] = field(default_factory=list)
     size: int = 1
 
@@ -211,7 +201,8 @@ class _Work:
         begun, said = time.monotonic(), not pool.reason
         try:
             while self._fill(pool):
-                self._take_in(self._next())
+                for future in self._ended(self.running):
+                    self._take_in(future)
                 if not said and time.monotonic() - begun > POOL.serial_note:
                     said = True
                     tell(f"cases are computed one after another in this process: {pool.reason}")
@@ -230,28 +221,20 @@ class _Work:
         width = pool.width
         seconds = POOL.seconds * max(1.0, width / POOL.served)
         while len(self.running) < POOL.ahead * width:
-            chunk = self.waiting.popleft() if self.waiting else self.source.take(self.size)
-            if chunk is None:
-                break
-            try:
-                future = pool.submit(self.function, chunk.items, seconds)
-            except BaseException:
-                self.waiting.appendleft(chunk)
-                raise
-            self.running[future] = chunk
-            future.add_done_callback(self.ended.put)
+            if not self.waiting:
+                chunk = self.source.take(self.size)
+                if chunk is None:
+                    break
+                self.waiting.append(chunk)
+            future = pool.submit(self.function, self.waiting[0].items, seconds)  # raises where the pool is broken
+            self.running[future] = self.waiting.popleft()
         return bool(self.running)
 
-    def _next(self) -> Future[Any]:
-        """The next future that has ended, in any order; the wait is interrupted by Ctrl-C."""
-        while True:
-            future = None
-            with suppress(Empty):
-                future = self.ended.get(timeout=POOL.awake)
-            if future is None:
-                self._show()  # outside the handler of Empty, so that Ctrl-C here prints one traceback, not two
-            elif future in self.running:
-                return future
+    def _ended(self, futures: Collection[Future[Any]]) -> list[Future[Any]]:
+        """Futures that have ended, one at least, as they were begun; the wait is interrupted by Ctrl-C."""
+        while not wait(futures, POOL.awake, FIRST_COMPLETED).done:
+            self._show()
+        return [future for future in futures if future.done()]
 
     def _take_in(self, future: Future[Any]) -> None:
         chunk = self.running[future]
@@ -286,26 +269,24 @@ class _Work:
 
     def _put_back(self, lost: bool) -> None:
         """Store the finished chunks; the others wait again."""
-        for future, chunk in sorted(self.running.items(), key=lambda pair: pair[1].start, reverse=True):
+        for future in sorted(self.running, key=lambda future: self.running[future].start, reverse=True):
             if future.done() and not future.cancelled() and future.exception() is None:
-                values, _ = future.result()
-                done, chunk = chunk.cut(len(values))
-                self._keep(done, values)
-            elif lost:
-                chunk.losses += 1
-            if chunk.items:
+                self._take_in(future)
+            else:
+                chunk = self.running.pop(future)
+                chunk.losses += lost
                 self.waiting.appendleft(chunk)
-        self.running = {}
 
     def _alone(self, pool: Place, suspect: _Chunk) -> None:
         """Run a chunk in pools of one worker, and halve it each time the worker ends, down to single cases."""
-        deaths, stack = Counter[int](), [suspect]
+        stack = [suspect]
         while stack and len(self.fatal) < POOL.fatal:
             single = pool.again(1)
             try:
                 with single.opened():
                     while stack:
-                        values = self._waited(single.submit(self.function, stack[-1].items, POOL.seconds))
+                        (future,) = self._ended([single.submit(self.function, stack[-1].items, POOL.seconds)])
+                        values, _ = future.result()
                         done, rest = stack.pop().cut(len(values))
                         self._keep(done, values)
                         stack += [rest] if rest.items else []
@@ -315,14 +296,8 @@ class _Work:
                 if half:
                     stack += reversed(chunk.cut(half))
                     continue
-                deaths[chunk.start] += 1
-                if deaths[chunk.start] < POOL.deaths:
+                chunk.losses += 1
+                if chunk.losses < POOL.losses + POOL.deaths:
                     stack.append(chunk)
                 else:
                     self.fatal.append((chunk.start, chunk.items[0]))
-
-    def _waited(self, future: Future[Any]) -> Array:
-        while not wait([future], POOL.awake).done:
-            self._show()
-        values: Array = future.result()[0]
-        return values

@@ -34,9 +34,13 @@ def written(path: str | Path) -> Iterator[Path]:
     target, special = _target(path)
     draft = _draft(target, special)
     try:
-        _create(draft, target)  # its name is known before it exists: an interruption at any later time removes it
+        # its name is known before it exists: an interruption at any later time removes it
+        os.close(os.open(draft, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
         yield draft
-        _take_place(draft, target, special)
+        if special:
+            target.write_bytes(draft.read_bytes())
+        else:
+            os.replace(draft, target)
     except OSError as error:
         raise _unwritable(path, error) from None
     finally:
@@ -138,21 +142,17 @@ def cache_folder() -> Path:
     `SINGIMPACT_CACHE=off` gives a folder that lasts as long as the process; so does a folder that others can change,
     for what is kept there is run as code: one line says so.
     """
+    from platformdirs import user_cache_path
+
     named = os.environ.get("SINGIMPACT_CACHE", "")
     if named == "off":
         return passing_folder()
-    directory = Path(named).expanduser() if named else _users_folder()
+    directory = Path(named).expanduser() if named else user_cache_path("singimpact", appauthor=False)
     reason = changeable(directory)
     if reason is None:
         return directory
     _tell_once(f"cache {shown(str(directory), 300)} is not used: {reason} (SINGIMPACT_CACHE names another folder)")
     return passing_folder()
-
-
-def _users_folder() -> Path:
-    from platformdirs import user_cache_path
-
-    return user_cache_path("singimpact", appauthor=False)
 
 
 def changeable(path: Path) -> str | None:
@@ -226,22 +226,8 @@ def _draft(target: Path, special: bool) -> Path:
     return folder_of_draft / f"{DRAFT}{os.urandom(8).hex()}{target.suffix}"
 
 
-def _create(draft: Path, target: Path) -> None:
-    try:
-        os.close(os.open(draft, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
-    except (OSError, ValueError) as error:
-        raise _unwritable(target, error) from None
-
-
 class _Writable(Exception):
     """Leaves a draft unfinished, once it could be created."""
-
-
-def _take_place(draft: Path, target: Path, special: bool) -> None:
-    if special:
-        target.write_bytes(draft.read_bytes())
-    else:
-        os.replace(draft, target)
 
 
 def _unwritable(path: str | Path, error: Exception) -> InputError:
@@ -251,14 +237,10 @@ def _unwritable(path: str | Path, error: Exception) -> InputError:
 
 # A lock on a file that the system releases when its holder ends, however it ends.
 
-try:
-    import fcntl
-except ImportError:  # Windows
-    fcntl = None  # type: ignore[assignment]
-try:
+if sys.platform == "win32":
     import msvcrt
-except ImportError:
-    msvcrt = None  # type: ignore[assignment]
+else:
+    import fcntl
 
 FAR = 1 << 40  # the byte that is locked on Windows, where a locked byte cannot be read
 
@@ -269,15 +251,15 @@ def lock(descriptor: int) -> bool:
     Where the file system has no locks the answer is True: the caller goes on without protection.
     """
     try:
-        if fcntl is not None:
-            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        elif msvcrt is not None:
+        if sys.platform == "win32":
             before = os.lseek(descriptor, 0, os.SEEK_CUR)
             os.lseek(descriptor, FAR, os.SEEK_SET)
             try:
-                msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)  # type: ignore[attr-defined, unused-ignore]
+                msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
             finally:
                 os.lseek(descriptor, before, os.SEEK_SET)
+        else:
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except (BlockingIOError, PermissionError):
         return False
     except OSError:  # a network file system without locks

@@ -14,7 +14,7 @@ _FILES = {
     "cylinder": "distances",
     "enclosed_closing": "ClosingBoxes SEARCH closed_boxes",
     "enclosed_crossing": "EnclosedCrossing",
-    "enclosed_event": "rate_of rate_over",
+    "enclosed_event": "rate_over",
     "events": "Event EventKind KINDS kind_of",
     "homoclinic": "Crossing Crossings crossings",
     "horseshoe": "CrossedSet Horseshoe",

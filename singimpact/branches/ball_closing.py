@@ -23,8 +23,7 @@ from singimpact.handed_on import flint
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import period_over
 
-SPARE = 6
-"""Digits of a flight beside those of the states."""
+SPARE = 6  # digits of a flight beside those of the states
 POINT = (Fraction(0), Fraction(0))
 
 
@@ -121,15 +120,10 @@ class BallClosing:
         self.osc, self.digits, self.over, self.word = osc, digits, over, word
         if osc.upper is not None and over is not None and over not in osc.parameters:
             raise Refused(f"orbits between two walls over the {over} are not enclosed, only those over a parameter")
-        self._balls = Balls(bits)
+        self.balls = Balls(bits)
         self.spans = Spans(osc, k, over)
         self.horizon = Fraction(horizon_of(osc, None))
-        self.gap = None if osc.upper is None else evaluate(subtract(osc.upper, osc.clearance), {}, self._balls)
-
-    @property
-    def balls(self) -> Balls:
-        """The ring of the numbers."""
-        return self._balls
+        self.gap = None if osc.upper is None else evaluate(subtract(osc.upper, osc.clearance), {}, self.balls)
 
     def model(self, point: list[Fraction], impact: int = 0) -> Oscillator:
         """The model with the number of a point, whose lower wall is that of an impact."""

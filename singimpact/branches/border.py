@@ -274,19 +274,16 @@ class _Search:
             return 0 < orbit.place <= goal
 
         side = 1 if in_time(high[1]) else -1
-        ends = halved(lambda x: in_time(self._flown(x, index, phases)) != (side > 0), low[0], high[0])
+        ends = halved(lambda x: in_time(self.releases.flown(x, index, phases)) != (side > 0), low[0], high[0])
         value = ends[side > 0]
-        at = self._flown(value, index, phases)
+        at = self.releases.flown(value, index, phases)
         entry = at.entry(at.place) if at.place else 0
         reach = max(value - self.values[0], self.values[-1] - value)
         near = self.releases.followed(self.releases.model(value), phases)
         self.found.append(Return(self.releases, value, near, index, at.place, entry, side, reach))
         gap = SETTINGS.away * self.spacing
-        beside = [(end, self._flown(end, index, phases)) for end in (value - gap, value + gap)]
+        beside = [(end, self.releases.flown(end, index, phases)) for end in (value - gap, value + gap)]
         return [(a, b) for a, b in ((low, beside[0]), (beside[1], high)) if a[0] < b[0]]
-
-    def _flown(self, value: float, index: int, phases: tuple[float, ...]) -> Released:
-        return self.releases.flown(value, index, phases)
 
     def orbits(self) -> list[BorderOrbit]:
         """The border orbits, each once."""

@@ -18,8 +18,8 @@ from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION, UPPER, value_of, with_number
 from singimpact.result import numbered
 
+# Arrays of a branch, a row for each of its points.
 POINTS = ("parameter", "period", "tau", "v", "stable", "visible", "multipliers")
-"""Arrays of a branch, a row for each of its points."""
 
 
 @dataclass(frozen=True, eq=False)

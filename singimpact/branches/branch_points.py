@@ -7,6 +7,7 @@ over the parameter (transcritical) or none (pitchfork); the second branch is rea
 """
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -19,13 +20,11 @@ from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.solutions import AnyClosing, closing_of, orbit_of, point_of
 from singimpact.branches.step_search import Crossing, EventTests, Key, Node, StepSearch
 from singimpact.branches.wall_closing import closing_of_word
-from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import CLEARANCE
 
 # Orbits of other branches that meet a branch at an event.
 
-APART = 1e-3
-"""Distance from a doubling at which the doubled orbit is given, in scaled unknowns."""
+APART = 1e-3  # distance from a doubling at which the doubled orbit is given, in scaled unknowns
 
 
 def states_of(orbit: PeriodicOrbit) -> Array:
@@ -55,10 +54,9 @@ def without_impact(orbit: PeriodicOrbit) -> PeriodicOrbit:
     times, speeds = np.asarray(orbit.tau, dtype=float), np.asarray(orbit.v, dtype=float)
     at = int(np.argmin(np.abs(speeds)))  # an orbit begins at its least phase, not where its branch did
     if n == 1:
-        osc = orbit.oscillator
-        closing = closing_of(osc, (), orbit.k, ())
-        end = closing.family.end({CLEARANCE: _wall(osc)}, float(times[0]), 0.0, -float(times[0]))
-        return orbit_of(closing, np.array([_wall(osc) + end.place[0], end.place[1]]))
+        closing, wall = closing_of(orbit.oscillator, (), orbit.k, ()), as_float(orbit.oscillator.clearance)
+        end = closing.family.end({CLEARANCE: wall}, float(times[0]), 0.0, -float(times[0]))
+        return orbit_of(closing, np.array([wall + end.place[0], end.place[1]]))
     others = [(at + 1 + i) % n for i in range(n - 1)]
     span = orbit.period
     later = [times[i] + (span if i <= at else 0.0) for i in others]
@@ -106,26 +104,16 @@ def _alternating(once: AnyClosing, twice: AnyClosing, at: Array) -> list[Periodi
     moved = np.concatenate([vector[:n], -vector[:n], vector[n:], -vector[n:], [0.0]])
     scales = twice.scales(point)
     scales[-1] = max(abs(parameter), 1e-3)
-    curve = Curve(Equations(twice), scales, 10 * APART)
+    curve = Curve(partial(_equations, twice), scales, 10 * APART)
     tangent = moved / scales
     corrected = curve.beyond(Point(point, tangent / np.linalg.norm(tangent)), APART)
     return [] if corrected is None else [orbit_of(twice, corrected[0].at)]
 
 
-class Equations:
+def _equations(closing: AnyClosing, point: Array) -> tuple[Array, Array]:
     """Closing conditions as equations of a curve."""
-
-    def __init__(self, closing: AnyClosing) -> None:
-        self.closing = closing
-
-    def equations(self, point: Array) -> tuple[Array, Array]:
-        """Values and derivatives."""
-        loop = self.closing.at(point)
-        return loop.miss, loop.slope
-
-
-def _wall(osc: Oscillator) -> float:
-    return as_float(osc.clearance)
+    loop = closing.at(point)
+    return loop.miss, loop.slope
 
 
 TEST = Key(BRANCH_POINT, 0, 0)
@@ -220,7 +208,7 @@ def _doubling(search: StepSearch, crossing: Crossing, equal: bool) -> BranchPoin
         times, speeds = (both[: n // 2] + both[n // 2 :] - shift) / 2, near[n : 2 * n].reshape(2, -1).mean(axis=0)
         guess = np.concatenate([half.point(times, speeds, shift), near[2 * n :]])
     places = [*range(n // 2), *range(n, n + n // 2), 2 * n] if n else [0, 1, 2]
-    curve = Curve(Equations(half), scales[places], 1.0)
+    curve = Curve(partial(_equations, half), scales[places], 1.0)
     start = curve.begin(guess)
     if start is None:
         return None
@@ -316,7 +304,7 @@ def _classified(tests: EventTests, point: Point, scales: Array, along: float) ->
     """The kind of a branch point, by one step to each side along the other branch."""
     closing = tests.closing
     across = null_plane(closing.at(point.at).slope * scales, point.tangent)
-    curve = Curve(Equations(closing), scales, 10 * APART)
+    curve = Curve(partial(_equations, closing), scales, 10 * APART)
     sides = [curve.beyond(Point(point.at, sign * across), APART) for sign in (1.0, -1.0)]
     if sides[0] is None or sides[1] is None:
         return BranchPoint(BRANCH_POINT, along, point.at, None)

@@ -27,10 +27,9 @@ from singimpact.branches.step_search import Crossing, EventTests, Key, StepSearc
 from singimpact.inputs import InputError
 from singimpact.store import cache_folder
 
+# Sub-packages that no branch depends on: a change of theirs leaves stored points valid.
 ABOVE = ("paper/", "documents/", "scenes/", "bench/", "cli/")
-"""Sub-packages that no branch depends on: a change of theirs leaves stored points valid."""
-EVERY = 1.0
-"""Seconds of work between two writings of points to the user's cache."""
+EVERY = 1.0  # seconds of work between two writings of points to the user's cache
 
 
 class Row(NamedTuple):
@@ -123,23 +122,6 @@ class BranchWalk(OrbitCurve):
             here = after
         yield from curve.walk(here, self.most - len(stored), stored[-1].following if stored else None)
 
-    def end_note(self, which: int, goal: float, missed: Point | None) -> str:  # noqa: ARG002
-        if missed is not None:
-            return f"ends at {self.over} = {missed.at[-1]:.12g}, next to the end of the interval"
-        return f"ends at {self.over} = {goal:.12g}, the end of the interval"
-
-    def stop_note(self, last: Point, why: str) -> str:
-        return f"at {self.over} = {last.at[-1]:.12g}: {self._reason(last) or why}"
-
-    def _reason(self, where: Point) -> str:
-        """Why flights have no value just beyond a point."""
-        if not isinstance(self.closing, Closing):
-            return ""
-        period = self.closing.period(where.at)
-        if min(flight[3] for flight in self.closing.flights(where.at)) < 1e-3 * period:
-            return "two impacts meet: a flight shrinks to nothing"
-        return ""
-
     # ---- a point: visible or not
 
     def row(self, point: Point, rounding: float = SETTINGS.touching, event: Event | None = None) -> Row:
@@ -180,14 +162,11 @@ class BranchWalk(OrbitCurve):
             row = self._crossed(search, crossing)
             if row is not None and not self._repeated(search, row, located):
                 located.append(row)
-        self._doubtful(search)
-        located.sort(key=lambda pair: pair[0])
-        return self._separated(search, located)
-
-    def _doubtful(self, search: StepSearch) -> None:
-        """Note test functions that touch 0."""
+        # test functions that touch 0
         for (kind, _, _), at in {key: (key, at) for key, at in search.doubts}.values():
             self.notes.append(f"near {self.over} = {at[-1]:.9g} {kind.doubt(self.closing, at)}")
+        located.sort(key=lambda pair: pair[0])
+        return self._separated(search, located)
 
     def _met(self, meeting: BranchPoint) -> None:
         """Note which orbits a doubled branch meets."""

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
@@ -316,7 +316,7 @@ def cascade(returned: Return, osc: Oscillator, border: tuple[Any, Any, float], d
         of it, and the change of the number that changes v by itself. digits : None for doubles.
     """
     value, error, scale = border
-    flights: _Flights
+    flights: _InDoubles | _InDigits
     if digits is None or value is None:
         centre, flights, digits = Fraction(returned.value), _InDoubles(returned), None
         wrong = Fraction(float(error)) + Fraction(EPSILON * abs(returned.value))
@@ -342,18 +342,8 @@ def _array(values: list[Fraction], digits: int | None) -> Array:
         return np.array([for_user(mp.mpf(value.numerator) / value.denominator) for value in values], dtype=object)
 
 
-class _Flights(Protocol):
-    """Released orbits, in doubles or in many digits."""
-
-    def landing(self, number: int, value: Fraction) -> Fraction | None:
-        """The time of an impact less that of the end of gamma; None where there is no such impact about there."""
-
-    def rounded(self, value: Fraction) -> Fraction:
-        """A value as these flights take it."""
-
-
 class _InDoubles:
-    """Landings by doubles."""
+    """Landings by doubles: times of impacts less that of the end of gamma, and values as these flights take them."""
 
     def __init__(self, found: Return) -> None:
         self.found = found
@@ -390,7 +380,7 @@ class _Edges:
     found : a return. flights : of the orbits. border : the value of the border orbit. wrong : its error.
     """
 
-    def __init__(self, found: Return, flights: _Flights, border: Fraction, wrong: Fraction) -> None:
+    def __init__(self, found: Return, flights: _InDoubles | _InDigits, border: Fraction, wrong: Fraction) -> None:
         self.found, self.flights, self.border, self.wrong = found, flights, border, wrong
         self.side = -found.side
 

@@ -10,6 +10,7 @@ An orbit without impact has conditions of its own, `FreeClosing`.
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import sqrt
+from operator import itemgetter
 from typing import ClassVar, NamedTuple
 
 import numpy as np
@@ -20,16 +21,12 @@ from singimpact.flights.derivative import log_determinant
 from singimpact.flights.family import Family, Number, Values
 from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION
 
-NEAR = 0.1
-"""A minimum of x - c is refined when it is below this part of the largest height."""
+NEAR = 0.1  # a minimum of x - c is refined when it is below this part of the largest height
+# A determinant that is smaller beside its terms has lost six digits of the product of the multipliers.
 CANCELLED = 1e-6
-"""A determinant that is smaller beside its terms has lost six digits of the product of the multipliers."""
-SETTLED = 1e-9
-"""The last step of Newton's method for the time of a minimum, of that time."""
-Flown = tuple[float, float, float, float]
-"""Launch in the first period, periods before it, velocity and flight time."""
-Turn = tuple[float, float]
-"""A local minimum of x - c in a flight: its time after the launch, and x - c there."""
+SETTLED = 1e-9  # the last step of Newton's method for the time of a minimum, of that time
+Flown = tuple[float, float, float, float]  # launch in the first period, periods before it, velocity and flight time
+Turn = tuple[float, float]  # a local minimum of x - c in a flight: its time after the launch, and x - c there
 
 
 class Leg(NamedTuple):
@@ -279,7 +276,7 @@ class Closing:
 
         A flight that has none, for it falls all the way after its rise, gives (nan, inf).
         """
-        return [min(turns, key=_height, default=(np.nan, np.inf)) for turns in self.minima(point)]
+        return [min(turns, key=itemgetter(1), default=(np.nan, np.inf)) for turns in self.minima(point)]
 
     def minima(self, point: Array) -> list[list[Turn]]:
         """All local minima between launch and hit of each flight, as `minima_of` gives them."""
@@ -314,13 +311,9 @@ class Closing:
         return np.array([self.leg(i, values).family.end(values, tau, 0.0, 0.0).by_time[1] for i, (tau, *_) in legs])
 
 
-def _height(turn: Turn) -> float:
-    return turn[1]
-
-
 def lowest(family: Family, values: Values, flight: tuple[float, float, float]) -> tuple[float, float]:
     """The lowest local minimum of x - c inside a flight, refined; (nan, inf) where there is none."""
-    return min(minima_of(family, values, flight), key=_height, default=(np.nan, np.inf))
+    return min(minima_of(family, values, flight), key=itemgetter(1), default=(np.nan, np.inf))
 
 
 def minima_of(
@@ -449,7 +442,7 @@ class FreeClosing:
 
     def heights(self, point: Array) -> list[tuple[float, float]]:
         """The lowest place of the orbit: its time, and x - c there."""
-        return [min(self.minima(point)[0], key=lambda turn: turn[1], default=(np.nan, np.inf))]
+        return [min(turns, key=itemgetter(1), default=(np.nan, np.inf)) for turns in self.minima(point)]
 
     def minima(self, point: Array) -> list[list[Turn]]:
         """All local minima of the orbit: time and x - c, each once."""

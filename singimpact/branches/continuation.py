@@ -2,20 +2,15 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
 from singimpact.algebra.numbers import Array
 from singimpact.progress import ProgressLine
 
-
-class Conditions(Protocol):
-    """Equations for a curve: one fewer than there are unknowns."""
-
-    def equations(self, point: Array) -> tuple[Array, Array]:
-        """Values and their derivatives, shapes (m,) and (m, m + 1); nan where there are none."""
-        ...
+# Of a point of m + 1 unknowns: m values and derivatives, shapes (m,) and (m, m + 1); nan where there are none.
+Equations = Callable[[Array], tuple[Array, Array]]
 
 
 @dataclass(frozen=True)
@@ -57,12 +52,12 @@ class Curve:
 
     Parameters
     ----------
-    conditions : the equations. scales : of the unknowns. step : the largest one.
+    equations : of the curve. scales : of the unknowns. step : the largest one.
     speeds : the place of the velocities, which may grow by orders of magnitude on the way: where they are larger than
         their scale the largest step is a part of them.
     """
 
-    conditions: Conditions
+    equations: Equations
     scales: Array
     step: float
     speeds: slice = field(default_factory=lambda: slice(0, 0))
@@ -195,7 +190,7 @@ class Curve:
         return 0 <= share < 1 and near and float(start.tangent @ after.tangent) > 0
 
     def _scaled(self, point: Array) -> tuple[Array, Array]:
-        values, slopes = self.conditions.equations(point)
+        values, slopes = self.equations(point)
         return values, slopes * self.scales
 
     def _with_tangent(self, point: Array, before: Array) -> Point:

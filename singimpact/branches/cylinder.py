@@ -10,10 +10,8 @@ from typing import Any
 import numpy as np
 
 Array = np.ndarray[Any, Any]
-ROUND = (1.0, 0.0)
-"""The circumference of a cylinder of placed points, and none along it, for scipy's trees."""
-TREES = 8
-"""More trees than this are joined to one: it is searched faster."""
+ROUND = (1.0, 0.0)  # the circumference of a cylinder of placed points, and none along it, for scipy's trees
+TREES = 8  # more trees than this are joined to one: it is searched faster
 
 
 def placed(points: Array, sides: Array) -> Array:

@@ -26,12 +26,10 @@ from singimpact.oscillator.model import Oscillator
 
 BITS = 30
 SEARCH = replace(BOXES, bits=BITS + 24, least=Fraction(1, 2**16), most=100_000, lost=20)
-PIECES = 6
-"""Times at which the first flight may meet the wall are cut to this power of 2 of a step."""
+PIECES = 6  # times at which the first flight may meet the wall are cut to this power of 2 of a step
+# A step whose end may be an impact ends at this part of the time before it, or not if that is less of the step.
 BEFORE, LEAST = 0.9, 0.05
-"""A step whose end may be an impact ends at this part of the time before it, or not if that is less of the step."""
-WIDEST = 0.3
-"""Boxes wider than this, of a period or of the highest velocity, are not flown."""
+WIDEST = 0.3  # boxes wider than this, of a period or of the highest velocity, are not flown
 
 
 class ClosingBoxes:

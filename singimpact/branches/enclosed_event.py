@@ -147,12 +147,7 @@ def _touching(kind: str, orbit: PeriodicOrbit, over: str, parameter: float, digi
         closing = TouchingClosing(orbit.oscillator, orbit.k, digits, bits, over, word)
         near = _from_touching_point(orbit, closing, Fraction(float(parameter)))
         operator = Krawczyk(closing, near, Fraction(1, 10 ** (digits + 2)))
-        point = operator.solved(near)
-        step = operator.step(point)
-        own = operator.own_radius(step)
-        tight = operator.image(point, step, own)
-        if tight is None:
-            return "Krawczyk's operator does not map the box into itself: the graze may be degenerate, or be two"
+        point, step, own, tight = operator.enclosed(near, "the box into itself: the graze may be degenerate, or be two")
         closing.first_hits(point, own)
         unique = operator.unique_within(point, step, own)
         tau, *rest = _numbers(closing.balls, point, tight.offsets, digits)
@@ -224,7 +219,7 @@ class _Curve:
 
     def _test(self, slopes: Any) -> Any:
         """The function that vanishes at the event, over a box."""
-        return event_function(self.kind, return_slope(slopes))
+        return kind_of(self.kind).of_return_map(return_slope(slopes))
 
     def _crossing(self, operator: Krawczyk, near: Point, close: Fraction) -> Point:
         """An orbit where the test vanishes up to `close` in the held unknown, by secants: nothing is proved here."""
@@ -250,12 +245,8 @@ class _Curve:
 
     def _end(self, operator: Krawczyk, near: Point, shift: Fraction) -> _End:
         """An orbit beside the event, proved, with the sign of the test there."""
-        point = operator.solved(operator.moved(near, shift))
-        step = operator.step(point)
-        own = operator.own_radius(step)
-        tight = operator.image(point, step, own)
-        if tight is None:
-            raise Refused("Krawczyk's operator does not map the box of an orbit beside the event into itself")
+        box = "the box of an orbit beside the event into itself"
+        point, _, own, tight = operator.enclosed(operator.moved(near, shift), box)
         value = self._test(tight.slopes)
         return _End(point, own, 1 if value > 0 else -1 if value < 0 else 0)
 
@@ -322,16 +313,6 @@ class _Curve:
 # ---- what vanishes at an event of the return map
 
 
-def event_function(kind: str, total: Any) -> Any:
-    """The function of the derivative of the return map that vanishes at the event."""
-    return kind_of(kind).of_return_map(total)
-
-
-def rate_of(kind: str, total: Any, change: Any) -> Any:
-    """The rate of the test, where M changes at a rate."""
-    return kind_of(kind).rate_of_return_map(total, change)
-
-
 def rate_over(kind: str, closing: BallClosing, operator: Krawczyk, point: Point, radius: Fraction) -> Any:
     """The rate of the test along the curve of orbits by the held unknown, over a box.
 
@@ -348,4 +329,4 @@ def rate_over(kind: str, closing: BallClosing, operator: Krawczyk, point: Point,
         slopes = flint.arb_mat([row[:2] for row in hit.slopes()])
         moved = flint.arb_mat(hit.along((tangent[2 * i], tangent[2 * i + 1], tangent[-1])))
         total, change = slopes * total, moved * total + slopes * change
-    return rate_of(kind, total, change)
+    return kind_of(kind).rate_of_return_map(total, change)

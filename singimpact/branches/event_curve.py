@@ -22,10 +22,9 @@ from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION, UPPER, value_of, with_number
 from singimpact.result import Result, numbered
 
-HALVES = 1e-6
-"""Halves of an orbit at a pitchfork that differ by more, in scaled unknowns, are not equal."""
+HALVES = 1e-6  # halves of an orbit at a pitchfork that differ by more, in scaled unknowns, are not equal
+# Half the width of a central difference, in scaled unknowns: the derivative then has a relative error of 1e-10.
 NUDGE = 1e-6
-"""Half the width of a central difference, in scaled unknowns: the derivative then has a relative error of 1e-10."""
 
 
 @dataclass(frozen=True)
@@ -254,12 +253,6 @@ class _Walk(OrbitCurve):
                 before = tests
             rows.append(after)
         return rows
-
-    def end_note(self, which: int, goal: float, missed: Point | None) -> str:  # noqa: ARG002
-        return f"ends at {self.closing.over[which]} = {goal:.12g}, the end of its interval"
-
-    def stop_note(self, last: Point, why: str) -> str:
-        return f"at ({last.at[-2]:.12g}, {last.at[-1]:.12g}): {why}"
 
     # ---- points of codimension two
 

@@ -26,8 +26,7 @@ from singimpact.oscillator.model import Oscillator
 from singimpact.result import Result
 
 Point = list[Fraction]
-Radius = Fraction | Sequence[Fraction]
-"""Of every unknown, or one for each."""
+Radius = Fraction | Sequence[Fraction]  # of every unknown, or one for each
 
 
 @dataclass(frozen=True)
@@ -51,6 +50,7 @@ class KrawczykSettings:
 
 
 KRAWCZYK = KrawczykSettings()
+ORBIT = "the box into itself: the orbit may be double, or graze"  # what is not shown where a box is refused
 
 
 class Equations(Protocol):
@@ -146,10 +146,6 @@ class Krawczyk:
         """The step that Newton's method would still take."""
         return (self.Y * self.equations.miss(point)).entries()  # type: ignore[no-any-return]
 
-    def own_radius(self, step: list[Any]) -> Fraction:
-        """The radius of a box that is wide enough for a zero so near."""
-        return max(KRAWCZYK.margin * max(map(upper, step)), self.small / 10)
-
     def image(self, point: Point, step: list[Any], radius: Radius, spread: Fraction = Fraction(0)) -> Image | None:
         """The image of a box; None where it does not lie inside.
 
@@ -174,12 +170,20 @@ class Krawczyk:
         inside = all(entry.is_finite() and abs(entry) < balls.rational(r) for entry, r in zip(off, radii, strict=True))
         return Image(point, off, slopes) if inside else None
 
-    def tight(self, point: Point, step: list[Any], radius: Radius) -> Image:
+    def tight(self, point: Point, step: list[Any], radius: Radius, box: str = ORBIT) -> Image:
         """The image of a box, with a reason where the box is refused."""
         found = self.image(point, step, radius)
         if found is None:
-            raise Refused("Krawczyk's operator does not map the box into itself: the orbit may be double, or graze")
+            raise Refused(f"Krawczyk's operator does not map {box}")
         return found
+
+    def enclosed(self, near: Point, box: str = ORBIT) -> tuple[Point, list[Any], Fraction, Image]:
+        """A zero to the digits wanted, the step left, the radius of its box, and the image of that box."""
+        point = self.solved(near)
+        step = self.step(point)
+        # wide enough for a zero so near
+        own = max(KRAWCZYK.margin * max(map(upper, step)), self.small / 10)
+        return point, step, own, self.tight(point, step, own, box)
 
     def unique_within(self, point: Point, step: list[Any], own: Fraction, spread: Fraction = Fraction(0)) -> Fraction:
         """The widest radius tried within which the zero is the only one; what fails is tried seldom, for it is slow.
@@ -295,10 +299,7 @@ def enclosed_orbit(
 
 def _enclosed(orbit: BallClosing, states: list[Fraction], digits: int) -> EnclosedOrbit:
     operator = Krawczyk(orbit, states, Fraction(1, 10 ** (digits + 2)))
-    states = operator.solved(states)
-    step = operator.step(states)
-    own = operator.own_radius(step)
-    tight = operator.tight(states, step, own)
+    states, step, own, tight = operator.enclosed(states)
     orbit.first_hits(states, own)
     unique = operator.unique_within(states, step, own)
     numbers = [

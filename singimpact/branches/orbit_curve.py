@@ -74,14 +74,6 @@ class OrbitCurve(ABC):
     def side(self, curve: Curve, start: Point, sign: float) -> list[Any]:
         """The rows in one direction, those of events among them."""
 
-    @abstractmethod
-    def end_note(self, which: int, goal: float, missed: Point | None) -> str:
-        """The note that the interval of a number ends; `missed` is the last point where its end is not reached."""
-
-    @abstractmethod
-    def stop_note(self, last: Point, why: str) -> str:
-        """Why no step is possible after the last point."""
-
     # ---- how it is followed
 
     def equations(self, point: Array) -> tuple[Array, Array]:
@@ -110,7 +102,7 @@ class OrbitCurve(ABC):
 
     def _curve(self) -> Curve:
         n = self.closing.n
-        return Curve(self, self.scales, self.step, slice(n, 2 * n) if n else slice(0, 2))
+        return Curve(self.equations, self.scales, self.step, slice(n, 2 * n) if n else slice(0, 2))
 
     def both_sides(self, start: Point) -> list[Any]:
         """The rows in both directions from a start, in the order of the curve."""
@@ -135,7 +127,11 @@ class OrbitCurve(ABC):
                 end = self._end(curve, here, length, after)
                 if end is not None:
                     yield Step(here, *end, True)
-                self.notes.append(self.end_note(*crossed, here if end is None else None))
+                which, goal = crossed
+                interval = "the end of its interval" if len(self.ends) > 1 else "the end of the interval"
+                if end is None and len(self.ends) == 1:
+                    goal, interval = here.at[-1], "next to the end of the interval"
+                self.notes.append(f"ends at {self.closing.over[which]} = {goal:.12g}, {interval}")
                 return
             yield Step(here, length, after, False)
             last = after
@@ -143,7 +139,16 @@ class OrbitCurve(ABC):
                 noun = "branch" if len(self.ends) == 1 else "curve"
                 self.notes.append(f"closed: the {noun} comes back to where it began")
                 return
-        self.notes.append(self.stop_note(last, curve.note))
+        numbers = ", ".join(f"{value:.12g}" for value in last.at[-len(self.ends) :])
+        where = f"{self.closing.over[0]} = {numbers}" if len(self.ends) == 1 else f"({numbers})"
+        self.notes.append(f"at {where}: {self._collapsed(last) or curve.note}")
+
+    def _collapsed(self, last: Point) -> str:
+        """Why flights have no value just beyond the last point of a branch."""
+        if not isinstance(self.closing, Closing) or len(self.ends) > 1:
+            return ""
+        shortest = min(flight[3] for flight in self.closing.flights(last.at))
+        return "two impacts meet: a flight shrinks to nothing" if shortest < 1e-3 * self.closing.period(last.at) else ""
 
     def _outside(self, at: Array) -> tuple[int, float] | None:
         """A number that is outside its interval, and the end beyond which it is."""

@@ -19,8 +19,7 @@ if TYPE_CHECKING:
     from singimpact.branches.krawczyk import EnclosedOrbit
 
 Sentences = tuple[str, ...]
-EQUAL = 1e-9
-"""Halves of an orbit that differ by less, of its period and of its largest velocity, are equal."""
+EQUAL = 1e-9  # halves of an orbit that differ by less, of its period and of its largest velocity, are equal
 
 
 class OfImpacts(Result):

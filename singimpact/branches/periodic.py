@@ -17,6 +17,7 @@ import numpy as np
 
 from singimpact.algebra.balls import BITS_A_DIGIT, as_rational
 from singimpact.algebra.expressions import names_in
+from singimpact.algebra.isolated_zeros import IsolatedZeros
 from singimpact.algebra.numbers import Array, as_float, constant, rational_near
 from singimpact.algebra.precision import balls_at, digits_at, for_user
 from singimpact.branches.ball_closing import BallClosing, return_slope
@@ -53,8 +54,7 @@ class PeriodicSettings:
 SETTINGS = PeriodicSettings()
 SEARCHED = "found from a grid of starts and from grazes: it is not shown that there are no others"
 CYCLES_SEARCHED = "found from a grid of velocities: it is not shown that there are no others"
-SPARE = 5
-"""Digits of the states in balls beside those asked for."""
+SPARE = 5  # digits of the states in balls beside those asked for
 
 
 def periodic(
@@ -203,10 +203,7 @@ def _doubts_of_two(osc: Oscillator, k: int, listed: list[PeriodicOrbit]) -> tupl
     proved = two_impacts(osc, k)
     if proved is None:
         return (SEARCHED, "the free motion is in resonance with the forcing: no formulas for a proof")
-    points, boxes = proved
-    undecided = f"{len(boxes.undecided)} boxes of phases and flight times, of {boxes.looked_at}, are not decided"
-    doubts = [] if boxes.complete else [undecided]
-    return (*doubts, *_lacking(osc, (2, k), points, listed))
+    return _lacking(osc, (2, k), proved, "flight times", listed)
 
 
 def _doubts_in_window(
@@ -214,23 +211,27 @@ def _doubts_in_window(
 ) -> tuple[str, ...]:
     """Why there may be more orbits of one or two impacts with all velocities in a window than those listed."""
     try:
-        points, boxes = closed_boxes(osc, *counts, speeds)
+        proved = closed_boxes(osc, *counts, speeds)
     except InputError as reason:
         return SEARCHED, f"f, g or rho is not analytic: {reason}"
-    undecided = f"{len(boxes.undecided)} boxes of phases and velocities, of {boxes.looked_at}, are not decided"
-    doubts = [] if boxes.complete else [undecided]
-    return (*doubts, *_lacking(osc, counts, points, listed))
+    return _lacking(osc, counts, proved, "velocities", listed)
 
 
 def _lacking(
-    osc: Oscillator, counts: tuple[int, int], points: list[Array], listed: list[PeriodicOrbit]
+    osc: Oscillator,
+    counts: tuple[int, int],
+    proved: tuple[list[Array], IsolatedZeros],
+    unknown: str,
+    listed: list[PeriodicOrbit],
 ) -> tuple[str, ...]:
-    """Visible orbits next to points with a solution each that are not in a list."""
-    closing = Closing(family(osc), *counts)
+    """Boxes that are not decided, and visible orbits next to points with a solution each that are not in a list."""
+    (points, boxes), doubts, closing = proved, list[str](), Closing(family(osc), *counts)
+    if not boxes.complete:
+        number = f"{len(boxes.undecided)} boxes of phases and {unknown}, of {boxes.looked_at},"
+        doubts.append(f"{number} are not decided")
     refined = [closing.newton(point) for point in points]
-    doubts = (
-        ("Newton's method does not arrive at an orbit that exists",) if any(root is None for root in refined) else ()
-    )
+    if None in refined:
+        doubts.append("Newton's method does not arrive at an orbit that exists")
     shown = _judged(osc, *counts, [root[0] for root in refined if root is not None])
     lacking = [
         orbit

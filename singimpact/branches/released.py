@@ -118,7 +118,7 @@ class Releases:
 
     def zeros(self, model: Oscillator, phases: tuple[float, ...], index: int) -> Array:
         """The zeros at which a_c rises after phases[index], in order, as far as an orbit is followed."""
-        start, period = phases[index], _period(model)
+        start, period = phases[index], as_float(model.period)
         turned = np.add.outer(np.arange(self.periods + 2) * period, np.array(phases)).ravel()
         if not np.isfinite(turned).all():
             return np.zeros(0)
@@ -127,13 +127,9 @@ class Releases:
         return np.sort(turned[(turned > start + gap) & (turned < start + self.periods * period + gap)])
 
 
-def _period(model: Oscillator) -> float:
-    return as_float(model.period)
-
-
 def _rising(model: Oscillator, near: float) -> float:
     """The double from which the mass lifts off, next to a phase; nan where Newton's method does not find it."""
-    period, at = _period(model), near
+    period, at = as_float(model.period), near
     for _ in range(SETTINGS.steps):
         value, slope = (float(acceleration(model, np.array([at]), order)[0]) for order in (0, 1))
         if not slope > 0 or not abs(at - near) < period / 4:

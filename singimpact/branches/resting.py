@@ -16,16 +16,11 @@ from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import CLEARANCE
 from singimpact.status import Status
 
-SAME_PHASE = 1e-9
-"""Lift-offs whose phases differ by less than this, of the period, are one."""
-TOUCHING = 1e-12
-"""Depth below the wall of an orbit that touches it, in units of the larger of |c| and 1."""
-FAR = 30.0
-"""Size of x and x', in units of the starts, at which Newton's method stops: stiff flights are slow."""
-ROUNDS = 40
-"""Steps of Newton's method at most."""
-FLOWN = 4000
-"""Impacts after a lift-off in which chatter must complete for the next one to be known."""
+SAME_PHASE = 1e-9  # lift-offs whose phases differ by less than this, of the period, are one
+TOUCHING = 1e-12  # depth below the wall of an orbit that touches it, in units of the larger of |c| and 1
+FAR = 30.0  # size of x and x', in units of the starts, at which Newton's method stops: stiff flights are slow
+ROUNDS = 40  # steps of Newton's method at most
+FLOWN = 4000  # impacts after a lift-off in which chatter must complete for the next one to be known
 
 
 def free_orbits(osc: Oscillator, k: int, lowest_only: bool = False) -> PeriodicOrbits:

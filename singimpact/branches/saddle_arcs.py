@@ -7,7 +7,7 @@ The expansion holds for |s| of 1e-5. Its images at Chebyshev nodes give a polyno
 a curve that is grown from there is stretched less, and rounding in s with it.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -192,16 +192,7 @@ def _fitted(near: Expansion, size: float) -> LocalArc:
     across = np.abs(missed[:, 0] * along[:, 1] - missed[:, 1] * along[:, 0]) / np.hypot(*along.T)
     if not np.hypot(*missed.T).max() <= SETTINGS.along * (size / near.size) * (near.error + SETTINGS.rounding):
         across = np.append(across, np.inf)
-    return LocalArc(
-        near.saddle,
-        near.stable,
-        near.multiplier,
-        near.scales,
-        near.direction,
-        size,
-        coefficients,
-        near.error + float(across.max()),
-    )
+    return replace(arc, error=near.error + float(across.max()))
 
 
 def expansion(saddle: PeriodicOrbit, stable: bool) -> Expansion:
@@ -226,14 +217,14 @@ def expansion(saddle: PeriodicOrbit, stable: bool) -> Expansion:
     best = Expansion(saddle, stable, multiplier, scales, state, direction, bend, SETTINGS.longest, np.inf)
     size = SETTINGS.longest
     while size > SETTINGS.shortest and best.error > SETTINGS.trust:
-        arc = Expansion(saddle, stable, multiplier, scales, state, direction, bend, size, 0.0)
+        arc = replace(best, size=size)
         ends = np.array([size, -size])
         missed = returned(saddle, arc.points(ends)) - arc.points(multiplier * ends)
         error = float(np.abs(missed / scales).max())
         if best.error < SETTINGS.floor and error > best.error / 2:
             break
         if error < best.error:  # false where a flight of the arc has no impact
-            best = Expansion(saddle, stable, multiplier, scales, state, direction, bend, size, error)
+            best = replace(arc, error=error)
         size /= 2
     if not np.isfinite(best.error):
         raise InputError("no arc next to the saddle comes back to it: the orbit lies too near to a graze")

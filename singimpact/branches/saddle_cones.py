@@ -28,7 +28,7 @@ from typing import Any
 from singimpact.algebra.balls import as_rational
 from singimpact.algebra.numbers import exact
 from singimpact.branches.ball_closing import POINT, EnclosedMap
-from singimpact.branches.krawczyk import EnclosedOrbit, enclosed_orbit, upper
+from singimpact.branches.krawczyk import enclosed_orbit, upper
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.flights.enclosures.certified_hit import ProvedImpact
 from singimpact.flights.enclosures.equation import Refused
@@ -68,7 +68,10 @@ class Cones:
 
     def __init__(self, saddle: PeriodicOrbit, digits: int, bits: int) -> None:
         self.saddle, self.map = saddle, EnclosedMap(saddle.oscillator, digits, bits)
-        self.orbit = _proved_orbit(saddle, digits)
+        proved_orbit = enclosed_orbit(saddle.oscillator, saddle.tau, saddle.v, saddle.k, digits)
+        if isinstance(proved_orbit, str):
+            raise Refused(f"the saddle is not proved: {proved_orbit}")
+        self.orbit = proved_orbit
         # tau and v of p, and their radii
         self.centre: Pair = (exact("tau", self.orbit.tau[0].value), exact("v", self.orbit.v[0].value))
         self.radii: Pair = (exact("tau", self.orbit.tau[0].radius), exact("v", self.orbit.v[0].radius))
@@ -173,13 +176,6 @@ def smooth(hit: ProvedImpact) -> ProvedImpact:
     if (a * d - b * c).contains(0) or not (a * d - b * c).is_finite():
         raise Refused("G is not shown to be invertible next to the orbit")
     return hit
-
-
-def _proved_orbit(saddle: PeriodicOrbit, digits: int) -> EnclosedOrbit:
-    found = enclosed_orbit(saddle.oscillator, saddle.tau, saddle.v, saddle.k, digits)
-    if isinstance(found, str):
-        raise Refused(f"the saddle is not proved: {found}")
-    return found
 
 
 def _eigenvectors(matrix: Any) -> list[list[Fraction]]:

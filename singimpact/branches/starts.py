@@ -43,8 +43,7 @@ from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration
 
 SEARCH = replace(BOXES, bits=64, least=Fraction(1, 2**18))
-EDGE = Fraction(1, 16)
-"""Of the window of tau beyond each end of a period: no zero is on an edge."""
+EDGE = Fraction(1, 16)  # of the window of tau beyond each end of a period: no zero is on an edge
 
 
 class TwoFlights(NamedTuple):
@@ -321,12 +320,9 @@ def conditions(closing: Closing, points: Array) -> tuple[Array, Array]:
     ]
     for i in range(n):
         after = (i + 1) % n
-        slope[:, 2 * i, i] += parts[0][:, i]
-        slope[:, 2 * i + 1, i] += parts[1][:, i]
-        slope[:, 2 * i, n + i] += parts[2][:, i]
-        slope[:, 2 * i + 1, n + i] += parts[3][:, i]
-        slope[:, 2 * i, after] += parts[4][:, i]
-        slope[:, 2 * i + 1, after] += parts[5][:, i]
+        for pair, column in enumerate((i, n + i, after)):  # by tau and v at the launch, and by tau at the impact
+            slope[:, 2 * i, column] += parts[2 * pair][:, i]
+            slope[:, 2 * i + 1, column] += parts[2 * pair + 1][:, i]
         slope[:, 2 * i + 1, n + after] -= 1.0
     return miss, slope
 

@@ -22,11 +22,10 @@ from singimpact.branches.solutions import AnyClosing
 
 # Test functions of events at a point of a branch, with their rates along it.
 
+# In place of 0 at the first point; its product with another value is not 0. Of a test that is a difference of two terms
+# which are equal in models without losses a part of these terms.
 LEAST, RESTING = 1e-300, 1e-8
-"""In place of 0 at the first point; its product with another value is not 0. Of a test that is a difference of two
-terms which are equal in models without losses a part of these terms."""
-REMEMBERED = 8
-"""Points whose closing conditions and minima are remembered."""
+REMEMBERED = 8  # points whose closing conditions and minima are remembered
 
 
 class Key(NamedTuple):

@@ -29,8 +29,7 @@ from singimpact.surface.curve import window_ends
 from singimpact.surface.outline_transitions import Transitions, at_wall as transitions_of_outline
 from singimpact.surface.swan_families import Transition
 
-SEEN_ALONE = ("tacnode", "triple point")
-"""Transitions that part intervals only where they are visible."""
+SEEN_ALONE = ("tacnode", "triple point")  # transitions that part intervals only where they are visible
 WORDS = ("stable", "neutral", "unstable", "virtual")
 
 

@@ -9,6 +9,7 @@ from singimpact.branches.transitions import BothSides
 from singimpact.dynamics.basins_of_attraction import Basins
 from singimpact.inputs import refuse
 from singimpact.oscillator.moving_number import value_of, with_number
+from singimpact.scenes.label_places import legend_below, legend_entries
 from singimpact.scenes.scene import LAYERS, Scene
 from singimpact.scenes.style import CHATTERED, CLASS_ORBITS, CLASSES, GREY, OPEN, PENS, VERMILLION
 
@@ -70,18 +71,15 @@ def _painted(basins: Basins, layers: list[tuple[Any, str]], colors: list[str], a
     from matplotlib.patches import Patch
 
     axes = _new_axes(7.2, 5.2) if axes is None else axes
-    image, patches = np.empty((*basins.codes.shape, 3)), []
+    image, entries = np.empty((*basins.codes.shape, 3)), dict[str, Any]()
     for (where, label), color in zip(layers, colors, strict=True):
         image[where] = to_rgb(color)
-        patches.append(Patch(facecolor=color, edgecolor=GREY, label=label))
+        entries[label] = Patch(facecolor=color, edgecolor=GREY, label=label)
     half_tau, half_v = np.diff(basins.tau[:2])[0] / 2, np.diff(basins.v[:2])[0] / 2
     box = (basins.tau[0] - half_tau, basins.tau[-1] + half_tau, basins.v[0] - half_v, basins.v[-1] + half_v)
     axes.imshow(image, origin="lower", extent=box, aspect="auto", interpolation="nearest", gid="basins")
     axes.set(**dict(zip(("xlabel", "ylabel"), (LABELS[name] for name in basins.coordinates), strict=True)))
-    axes.legend(
-        handles=patches[:12], loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=3, frameon=False, fontsize="small"
-    )
-    return axes
+    return legend_below(axes, dict(list(entries.items())[:12]))
 
 
 def _new_axes(width: float, height: float) -> Any:
@@ -126,18 +124,13 @@ def _draw(axes: Any, model: Any, side: Basins, colors: list[str]) -> None:
     half = (side.tau[1] - side.tau[0]) / 2
     tau, speeds = (side.tau[0] - half, side.tau[-1] + half), (0.0, float(side.v[-1] + (side.v[1] - side.v[0]) / 2))
     scene = Scene(model, tuple(CURVES), tau, v=speeds, pixels=600)
-    limits, legend = (axes.get_xlim(), axes.get_ylim()), axes.get_legend()
-    handles, labels = list(legend.legend_handles), [text.get_text() for text in legend.get_texts()]
-    for handle in handles:
+    limits, entries = (axes.get_xlim(), axes.get_ylim()), legend_entries(axes)
+    for handle in entries.values():
         handle.set_alpha(FAINT)
     for name, pen in CURVES.items():
-        layer, lines = LAYERS[name], list[Any]()
+        layer, look = LAYERS[name], PENS[pen].line() | {"linewidth": WIDTHS[name]}
         for curve in scene.results.get(layer.need):
-            lines += axes.plot(*curve.points.T, **PENS[pen].line() | {"linewidth": WIDTHS[name]}, zorder=4)
-        if lines:
-            handles.append(lines[0])
-            labels.append(layer.label)
+            (line,) = axes.plot(*curve.points.T, **look, zorder=4)
+            entries.setdefault(layer.label, line)
     axes.set(xlim=limits[0], ylim=limits[1])
-    axes.legend(
-        handles, labels, loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=2, frameon=False, fontsize="small"
-    )
+    legend_below(axes, entries, 2, 0.14)

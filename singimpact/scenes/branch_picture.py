@@ -112,18 +112,11 @@ class _Drawn:
         self.number, self.heights = np.array(number), np.array(rows)
         self.classes = np.array(kinds)  # of an event none
 
-    def _periods(self) -> Array:
-        branch = self.branch
-        return branch.period / branch.k
-
     def _heights(self) -> Array:
         branch = self.branch
         if self.shown == "phase":
-            return (
-                np.asarray(np.mod(branch.tau / self._periods()[:, None], 1.0))
-                if branch.n
-                else np.full((len(branch), 1), np.nan)
-            )
+            periods = (branch.period / branch.k)[:, None]
+            return np.asarray(np.mod(branch.tau / periods, 1.0)) if branch.n else np.full((len(branch), 1), np.nan)
         if branch.n:
             return _rebounds(branch.v, branch.wall)
         if self.shown == "v":

@@ -14,7 +14,7 @@ from singimpact.algebra.rings import DOUBLES
 from singimpact.contact.points import is_polynomial
 from singimpact.contact.swans import SwanPoint, swan_points_over_clearance, swans_are_listed
 from singimpact.dynamics.invariant_arcs import grown_gamma
-from singimpact.inputs import refuse
+from singimpact.inputs import refuse, whole
 from singimpact.oscillator.model import Oscillator, require_rebound
 from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.studies import interval
@@ -155,8 +155,7 @@ def clearance_film(
     if not isinstance(model, Oscillator):
         raise refuse("model", model, "an ImpactOscillator")
     require_rebound(model, "the page, which draws gamma,")
-    if isinstance(steps, bool) or not isinstance(steps, int) or not 2 <= steps <= 1001:
-        raise refuse("steps", steps, "a whole number from 2 to 1001")
+    steps = whole("steps", steps, 2, 1001)
     ends = None if between is None else interval(between)
     if ends is not None and ends[1] >= _highest(model):
         raise refuse("between", between, f"clearances below the upper wall, which stays at x = {model.upper}")
@@ -223,7 +222,8 @@ def _through(swan: SwanPoint, between: tuple[Fraction, Fraction] | None, steps: 
     a = a'' (sigma^2 - half^2)/2 and a = -f_x (c - c_0) at the swan, to leading order.
     """
     curvature = abs(float(acceleration(swan.model.replace(clearance=swan.place), np.array([swan.tau]), 2)[0]))
-    slope = abs(_stiffness(swan))
+    rest = substitute(swan.model.force(), {"xdot": number(0)})
+    slope = abs(float(evaluate(derivative(rest, "x"), {"x": swan.clearance, "t": swan.tau}, DOUBLES)))
     period = swan.model.period
     widest = SETTINGS.alone if period is None else SETTINGS.opening * as_float(period)
     if between is None:
@@ -249,12 +249,6 @@ def _through(swan: SwanPoint, between: tuple[Fraction, Fraction] | None, steps: 
         return View((swan.tau - tau, swan.tau + tau), (-t, t), size * scale * share**2)
 
     return [(clearance, view(clearance)) for clearance in places.tolist()]
-
-
-def _stiffness(swan: SwanPoint) -> float:
-    """f_x at (c_0, 0) and the time of the swan."""
-    rest = substitute(swan.model.force(), {"xdot": number(0)})
-    return float(evaluate(derivative(rest, "x"), {"x": swan.clearance, "t": swan.tau}, DOUBLES))
 
 
 def _frame(surface: ImpactSurface, clearance: float, view: View) -> ClearanceFrame:

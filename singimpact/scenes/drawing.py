@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -263,7 +264,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-WIDE, HIGH, BRANCHES = (8.0, 4.0), (7.2, 5.2), (7.2, 4.8)  # inches
+SIZES = (8.0, 4.0), (7.2, 5.2), (7.2, 4.8)  # inches
 LETTERS = {"tau": r"time $\tau$", "t": "flight time $t$", "v": "velocity $v$"}
 
 
@@ -277,10 +278,10 @@ def plot(
     Parameters
     ----------
     thing : an orbit, a periodic orbit with impacts, a section of an orbit, a map of release phases, a scene, basins, a
-        bifurcation diagram, a branch or an event curve or a list of them, W^s or W^u of a saddle or a list of them, the
-        points where two cross, a certified orbit in which they do, a certified horseshoe, a border orbit, of which the
-        cascade is drawn, both sides of a transition (on two axes), a curve or a list of curves of one plane, or an
-        impact surface, of which Z and H are drawn, with the cut at a second wall.
+        bifurcation diagram, a branch or an event curve or a list of them, W^s or W^u of a
+        saddle or a list of them, the points where two cross, a certified orbit in which they do, a certified horseshoe,
+        a border orbit, of which the cascade is drawn, both sides of a transition (on two axes), a curve or a list of
+        curves of one plane, or an impact surface, of which Z and H are drawn, with the cut at a second wall.
     ax : where to draw; those of a new figure of pyplot when it is not given, so that a notebook shows it and
         `matplotlib.pyplot.show()` does. Branches drawn on the axes of a bifurcation diagram keep its limits, and so do
         manifolds on those of basins, and a certified orbit on those of manifolds.
@@ -319,7 +320,7 @@ def _sheet(thing: Any) -> Array:
         return np.array(orbit_sheet(diagram, _figure(SHEET)).axes, dtype=object)
     if not isinstance(diagram, Bifurcation):
         raise refuse("thing to plot as a sheet", type(diagram).__name__, "an orbit, or a diagram and branches over it")
-    return np.array(bifurcation_sheet(diagram, branches, _figure(HIGH)).axes, dtype=object)
+    return np.array(bifurcation_sheet(diagram, branches, _figure(SIZES[1])).axes, dtype=object)
 
 
 def _children(axes: Any) -> list[Any]:
@@ -345,25 +346,15 @@ def _drawn(thing: Any, axes: Axes, height: str) -> Any:
         return thing.draw(axes)
     if isinstance(thing, ImpactSurface):
         thing = [*thing.zero_set, *thing.horizon, *thing.beyond, *thing.cut]
-    if isinstance(thing, Bifurcation):
-        return draw_bifurcation(thing, _new_axes() if axes is None else axes, height)
-    if isinstance(thing, BothSides):
-        return draw_both_sides(thing, _beside() if axes is None else axes)
-    for kind, size, draw in ALONE:
-        if isinstance(thing, kind):
-            return draw(thing, _new_axes(size) if axes is None else axes)
     several = list(thing) if isinstance(thing, list | tuple) else [thing]
-    if several and all(isinstance(item, Branch) for item in several):
-        return draw_branches(several, _new_axes(BRANCHES) if axes is None else axes, height)
-    if isinstance(thing, BorderOrbit):
-        return draw_border(thing, *(_two_axes() if axes is None else (axes,)))
-    for kind, size, draw in TOGETHER:
-        if several and all(isinstance(item, kind) for item in several):
-            return draw(several, _new_axes(size) if axes is None else axes)
+    for kind, alone, new, draw in PICTURES:
+        if isinstance(thing, kind) if alone else several and all(isinstance(item, kind) for item in several):
+            more = {"height": height} if draw in (draw_bifurcation, draw_branches) else {}
+            return draw(thing if alone else several, new() if axes is None else axes, **more)
     raise refuse(
         "thing to plot",
         type(thing).__name__,
-        "an orbit, a scene, basins, a bifurcation, branches, event curves, manifolds, border orbits, or curves",
+        "an orbit, a scene, basins, a bifurcation, branches, event curves, manifolds, border orbits or curves",
     )
 
 
@@ -373,22 +364,18 @@ def _curves(curves: Sequence[Curve], axes: Axes) -> Axes:
     if len(planes) > 1:
         raise refuse("curves to plot", " and ".join(map(str, planes)), "curves of one plane")
     for curve in curves:
-        _curve(curve, axes)
+        pen = PENS.get(curve.name, PENS["graph"])
+        axes.plot(*curve.points.T, **pen.line(), label=pen.words if curve.name in PENS else curve.name)
+        for mark in curve.marks:
+            point = curve.points[mark.index]
+            axes.plot(*point, "o", color=BLACK, markersize=4)
+            axes.annotate(mark.name, point, (5, 5), textcoords="offset points")
+        across, up = curve.axes
+        axes.set(xlabel=LETTERS.get(across, across), ylabel=LETTERS.get(up, up))
     handles, labels = axes.get_legend_handles_labels()
     once = dict(zip(labels, handles, strict=True))
     axes.legend(once.values(), once.keys(), loc="best")
     return axes
-
-
-def _curve(curve: Curve, axes: Axes) -> None:
-    pen = PENS.get(curve.name, PENS["graph"])
-    axes.plot(*curve.points.T, **pen.line(), label=pen.words if curve.name in PENS else curve.name)
-    for mark in curve.marks:
-        place = curve.points[mark.index]
-        axes.plot(*place, "o", color=BLACK, markersize=4)
-        axes.annotate(mark.name, place, (5, 5), textcoords="offset points")
-    across, up = curve.axes
-    axes.set(xlabel=LETTERS.get(across, across), ylabel=LETTERS.get(up, up))
 
 
 def _figure(size: tuple[float, float]) -> Figure:
@@ -398,35 +385,35 @@ def _figure(size: tuple[float, float]) -> Figure:
     return matplotlib.pyplot.figure(figsize=size, dpi=150, layout="constrained")
 
 
-def _new_axes(size: tuple[float, float] = WIDE) -> Axes:
-    return _figure(size).add_subplot()
+def _new_axes(size: tuple[float, float], *grid: int, **panels: Any) -> Any:
+    return _figure(size).subplots(*grid, **panels)
 
 
-def _two_axes() -> Any:
-    """Two axes that share their horizontal one, the upper one higher."""
-    return _figure(HIGH).subplots(2, sharex=True, height_ratios=(3, 2))
+def _border(border: BorderOrbit, axes: Any) -> Any:
+    """The cascade on one of the axes, or on two, of which the lower one has the multipliers."""
+    return draw_border(border, *np.ravel(axes))
 
 
-def _beside() -> Any:
-    """Two axes beside each other that share their vertical one."""
-    return _figure((11.0, 5.2)).subplots(1, 2, sharey=True)
-
-
-Drawer = Callable[[Any, Any], Any]
-# types that are drawn alone: the size of the picture, and the function that draws it
-ALONE: tuple[tuple[type, tuple[float, float], Drawer], ...] = (
-    (Crossings, HIGH, draw_crossings),
-    (EnclosedCrossing, HIGH, draw_certified_crossing),
-    (Horseshoe, WIDE, draw_horseshoe),
-    (Orbit, WIDE, draw_orbit),
-    (PeriodicOrbit, WIDE, draw_periodic),
-    (Section, HIGH, draw_section),
-    (ReleaseMap, HIGH, draw_release_map),
-    (Basins, HIGH, draw_basins),
-)
-# types that are drawn alone, or several in one picture
-TOGETHER: tuple[tuple[type, tuple[float, float], Drawer], ...] = (
-    (Curve, WIDE, _curves),
-    (EventCurve, BRANCHES, draw_event_curves),
-    (Manifold, HIGH, draw_manifolds),
+Drawer = Callable[..., Any]
+New = Callable[[], Any]
+WIDE, HIGH, LOW = (partial(_new_axes, size) for size in SIZES)
+UPRIGHT = partial(_new_axes, SIZES[1], 2, sharex=True, height_ratios=(3, 2))
+BESIDE = partial(_new_axes, (11.0, 5.2), 1, 2, sharey=True)
+# types, whether each is drawn alone or several in one picture, new axes, and the function that draws
+PICTURES: tuple[tuple[type, bool, New, Drawer], ...] = (
+    (Bifurcation, True, WIDE, draw_bifurcation),
+    (BothSides, True, BESIDE, draw_both_sides),
+    (Crossings, True, HIGH, draw_crossings),
+    (EnclosedCrossing, True, HIGH, draw_certified_crossing),
+    (Horseshoe, True, WIDE, draw_horseshoe),
+    (Orbit, True, WIDE, draw_orbit),
+    (PeriodicOrbit, True, WIDE, draw_periodic),
+    (Section, True, HIGH, draw_section),
+    (ReleaseMap, True, HIGH, draw_release_map),
+    (Basins, True, HIGH, draw_basins),
+    (BorderOrbit, True, UPRIGHT, _border),
+    (Branch, False, LOW, draw_branches),
+    (Curve, False, WIDE, _curves),
+    (EventCurve, False, LOW, draw_event_curves),
+    (Manifold, False, HIGH, draw_manifolds),
 )

@@ -35,6 +35,7 @@ from singimpact.scenes.clearance_frames import SETTINGS, ClearanceFilm, Clearanc
 from singimpact.scenes.style import BLACK, BLUE, GREY, PENS, SHADE, WALL, WHITE, Pen, on_dark
 from singimpact.store import write_text
 
+# Curves of a frame, with the pen of each and its words in the legend.
 CURVES = {
     "Z": ("Z", "Z: launched at rest, meets x = c again"),
     "H": ("H", "H: the same flights run back, landing at rest"),
@@ -43,13 +44,12 @@ CURVES = {
     "gamma": ("gamma", "\u03b3: below it, chatter completes before the tangency"),
     "": ("orbit", "impacts of the orbit"),
 }
-"""Curves of a frame, with the pen of each and its words in the legend."""
+# What the legend has of a model with two walls, in place of its words or beside them.
 AT_TWO_WALLS = {
     "": ("orbit", "impacts of the orbit at the lower wall"),
     "upper": ("orbit", "impacts of the orbit at the upper wall"),
     "cut": ("cut", "cut: the flight grazes the upper wall"),
 }
-"""What the legend has of a model with two walls, in place of its words or beside them."""
 BOTH_WALLS = (
     " Every step is searched for both walls, and the nearer root is the impact; from the upper wall the model with "
     "x -> -x is flown. Velocities are those away from the wall."
@@ -227,18 +227,17 @@ def _steps(points: Array, tau: tuple[float, float], up: tuple[float, float]) -> 
 # A model as JavaScript: the kernels that fly it in a browser, its recurrence, and its numbers.
 
 KERNELS = (roots, steps, taylor)
+# What `flights.bind` puts in the places of functions of linear models.
 BOUND = {
     "step_size": "step_size_of_discs",
     "singular_part": "singular_part_of_discs",
     "restart": "state_kept",
     "quiet": "quiet_in_steps",
 }
-"""What `flights.bind` puts in the places of functions of linear models."""
 GIVEN = "given"
-EMITTED = ("coefficients", "disc")
-"""The recurrence of f and g."""
+EMITTED = ("coefficients", "disc")  # the recurrence of f and g
+# What the page calls and reads of one wall, beside `taylor_flight` and `follow`.
 USED = ("coefficients", "rebound", "constants_of", "law_of", "MODEL")
-"""What the page calls and reads of one wall, beside `taylor_flight` and `follow`."""
 
 
 def model_in_javascript(osc: Oscillator) -> str:

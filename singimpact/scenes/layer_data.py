@@ -8,7 +8,7 @@ from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from time import perf_counter
-from typing import Any, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,37 +21,34 @@ from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.status import Wall
 from singimpact.store import cache_folder
 from singimpact.surface.curve import STATES, Curve, Mark, Window
-from singimpact.surface.impact_surface import ImpactSurface, NamedLine
+from singimpact.surface.impact_surface import ImpactSurface
 
+# Needs that are read from the cache; the rest costs no flight.
 STORED = ("lines", "beyond", "cut", "visible", "shadow", "gamma", "stable-manifolds", "foliation", "orbits")
-"""Needs that are read from the cache; the rest costs no flight."""
 
 
-class Shown(Protocol):
-    """The fields of a scene that its layers read."""
+class Shown(NamedTuple):
+    """Values that the layers of a scene are computed from; `times`, `speeds` : the windows of t and v."""
 
-    @property
-    def osc(self) -> Oscillator: ...
-    @property
-    def seen(self) -> Oscillator: ...
-    @property
-    def tau(self) -> tuple[float, float]: ...
-    @property
-    def times(self) -> tuple[float, float]: ...
-    @property
-    def speeds(self) -> tuple[float, float]: ...
-    @property
-    def pixels(self) -> int: ...
-    @property
-    def feet(self) -> tuple[Any, ...]: ...
-    @property
-    def leaves(self) -> int: ...
-    @property
-    def orbits(self) -> tuple[tuple[Any, Any], ...]: ...
-    @property
-    def impacts(self) -> int: ...
+    osc: Oscillator  # its lower wall is shown
+    tau: tuple[float, float]
+    times: tuple[float, float]
+    speeds: tuple[float, float]
+    pixels: int
+    feet: tuple[Any, ...]
+    leaves: int
+    orbits: tuple[tuple[Any, Any], ...]
+    impacts: int
+
     def depends(self, need: str) -> tuple[Any, ...]:
         """The values that the curves of a need depend on; a cached result is used where all are equal."""
+        more = {
+            "gamma": (self.speeds,),
+            "stable-manifolds": (self.speeds, list(map(str, self.feet))),
+            "foliation": (self.speeds, self.leaves),
+            "orbits": ([list(map(str, state)) for state in self.orbits], self.impacts),
+        }
+        return (self.osc.to_dict(), self.tau, self.pixels, *more.get(need, (self.times,)))
 
 
 class Results:
@@ -95,7 +92,7 @@ class Results:
     def surface(self) -> ImpactSurface:
         """V_c' of the scene; what is known of it is not flown again."""
         scene = self.scene
-        return ImpactSurface(scene.seen, scene.tau, scene.times, 1 / scene.pixels)
+        return ImpactSurface(scene.osc, scene.tau, scene.times, 1 / scene.pixels)
 
     @property
     def states(self) -> Window:
@@ -103,13 +100,9 @@ class Results:
         return Window(self.scene.tau, (0.0, self.scene.speeds[1]), 1 / self.scene.pixels)
 
 
-def _lines(results: Results) -> list[Curve]:
-    return [line.curve for line in results.surface.lines]
-
-
 def _of_surface(name: str) -> Callable[[Results], list[Curve]]:
     def compute(results: Results) -> list[Curve]:
-        shared: dict[str, list[Any]] = {"lines": [NamedLine.of(curve) for curve in results.get("lines")]}
+        shared: dict[str, list[Any]] = {"lines": results.get("lines")}
         if "visible" in results.found:
             shared["horizon"] = results.found["visible"]
         results.surface.take(**shared)
@@ -124,12 +117,8 @@ def _visible(results: Results) -> list[Curve]:
     return [replace(curve, first_hits=curve.visible) for curve in _of_surface("horizon")(results)]
 
 
-def _gamma(results: Results) -> list[Curve]:
-    return gammas_within(results.scene.seen, results.states)
-
-
 def _manifolds(results: Results, feet: Iterable[Any]) -> list[Curve]:
-    return [curve for foot in feet for curve in stable_manifold(results.scene.seen, results.states, foot)]
+    return [curve for foot in feet for curve in stable_manifold(results.scene.osc, results.states, foot)]
 
 
 def _leaves(results: Results) -> list[Curve]:
@@ -137,11 +126,11 @@ def _leaves(results: Results) -> list[Curve]:
     low, high = results.scene.tau
     count = results.scene.leaves
     feet = low + (np.arange(count) + 0.5) * (high - low) / count
-    return _manifolds(results, map(repr, feet[acceleration(results.scene.seen, feet) < 0].tolist()))
+    return _manifolds(results, map(repr, feet[acceleration(results.scene.osc, feet) < 0].tolist()))
 
 
 def _orbits(results: Results) -> list[Curve]:
-    flown = [orbit(results.scene.seen, tau, v, results.scene.impacts) for tau, v in results.scene.orbits]
+    flown = [orbit(results.scene.osc, tau, v, results.scene.impacts) for tau, v in results.scene.orbits]
     made = [np.stack([np.asarray(each.tau), np.asarray(each.v)], axis=1) for each in flown]
     made = [
         points if each.wall is None else points[each.wall == Wall.lower]
@@ -151,7 +140,7 @@ def _orbits(results: Results) -> list[Curve]:
 
 
 NEEDS: dict[str, tuple[Callable[[Results], list[Curve]], tuple[str, ...]]] = {
-    "lines": (_lines, ()),
+    "lines": (lambda results: results.surface.lines, ()),
     "zero-set": (_of_surface("zero_set"), ("lines",)),
     "horizon": (_of_surface("horizon"), ("lines",)),
     "visible": (_visible, ("lines",)),
@@ -160,7 +149,7 @@ NEEDS: dict[str, tuple[Callable[[Results], list[Curve]], tuple[str, ...]]] = {
     "cut": (lambda results: results.surface.cut, ()),
     "outline": (_of_surface("outline"), ("lines",)),
     "discontinuities": (_of_surface("discontinuities"), ("lines", "visible")),
-    "gamma": (_gamma, ()),
+    "gamma": (lambda results: gammas_within(results.scene.osc, results.states), ()),
     "stable-manifolds": (lambda results: _manifolds(results, results.scene.feet), ()),
     "foliation": (_leaves, ()),
     "orbits": (_orbits, ()),

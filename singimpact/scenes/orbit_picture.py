@@ -103,8 +103,7 @@ def draw_release_map(releases: ReleaseMap, axes: Axes) -> Axes:
     for where, color, label in ((~flat, BLUE, "leaves at once"), (flat, VERMILLION, "rests: flat")):
         axes.plot(np.mod(start[where], period), phase[where], ".", color=color, markersize=2.5, label=label)
     axes.set(xlabel=r"release phase $\tau$", ylabel="next release phase", xlim=(0, period), ylim=(0, period))
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=3, frameon=False, fontsize="small")
-    return axes
+    return legend_below(axes, legend_entries(axes))
 
 
 def shown_end(orbit: Orbit) -> float:

@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.numbers import as_float, constant
-from singimpact.inputs import InputError, checked_methods, refuse, require_known, shown, unknown
+from singimpact.inputs import InputError, checked_methods, refuse, require_known, shown, unknown, whole
 from singimpact.oscillator.model import FIELDS, Oscillator, read_fields
-from singimpact.scenes.layer_data import Results
+from singimpact.scenes.layer_data import Results, Shown
 from singimpact.scenes.style import BLACK, GREY, PENS, WHITE
 from singimpact.store import read_bounded
 from singimpact.surface.curve import STATES, SURFACE, Curve, window_ends
@@ -132,18 +132,12 @@ class Scene:
         self.osc.seen_from(self.wall)  # refused before the work
         if isinstance(self.layers, str) or not isinstance(self.layers, Iterable):
             raise refuse("layers", self.layers, "a list of names of layers")
-        if (
-            isinstance(self.pixels, bool)
-            or not isinstance(self.pixels, int)
-            or not (SIZES[0] <= self.pixels <= SIZES[1])
-        ):
-            raise refuse("pixels", self.pixels, f"an integer from {SIZES[0]} to {SIZES[1]}")
+        self._set("pixels", whole("pixels", self.pixels, *SIZES))
         for name in self.layers:
             if not isinstance(name, str) or name not in LAYERS:
                 raise unknown("layer", str(name), LAYERS)
-        for name, value, most in (("leaves", self.leaves, LEAVES), ("impacts", self.impacts, 100_000)):
-            if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= most:
-                raise refuse(name, value, f"an integer from 1 to {most}")
+        for name, most in (("leaves", LEAVES), ("impacts", 100_000)):
+            self._set(name, whole(name, getattr(self, name), 1, most))
         self._set("layers", tuple(self.layers))
         self._set("title", checked_text("title", self.title))
         self._set("plane", self._plane())
@@ -223,21 +217,11 @@ class Scene:
         found: tuple[float, float] = self.v if self.v is not None else (0.0, 1.0)
         return found
 
-    def depends(self, need: str) -> tuple[Any, ...]:
-        """The values that the curves of a need depend on; a cached result is used where all are equal."""
-        ground = (self.seen.to_dict(), self.tau, self.pixels)
-        more = {
-            "gamma": (self.speeds,),
-            "stable-manifolds": (self.speeds, list(map(str, self.feet))),
-            "foliation": (self.speeds, self.leaves),
-            "orbits": ([list(map(str, state)) for state in self.orbits], self.impacts),
-        }
-        return (*ground, *more.get(need, (self.times,)))
-
     @cached_property
     def results(self) -> Results:
         """The curves of the layers, each computed when a layer first uses it."""
-        return Results(self)
+        windows = (self.tau, self.times, self.speeds, self.pixels)
+        return Results(Shown(self.seen, *windows, self.feet, self.leaves, self.orbits, self.impacts))
 
     @cached_property
     def seconds(self) -> dict[str, float]:

@@ -14,6 +14,7 @@ OPEN: dict[str, Any] = {"color": BLACK, "markerfacecolor": WHITE}  # a marker
 DASHES, DOTS, DASH_DOT, SHORT_DASHES = (0, (5, 2)), (0, (1, 1.4)), (0, (6, 2, 1, 2)), (0, (2.6, 1.2))
 
 
+# Classes of states that settle on no periodic orbit.
 CLASSES = {
     "not decided": "#F2F2F2",
     "sensitive": "#E6E6E6",
@@ -24,7 +25,6 @@ CLASSES = {
     "continuum": "#D9D9D9",
     "rest": BLACK,
 }
-"""Classes of states that settle on no periodic orbit."""
 CHATTERED = (BLACK, "#3D3D3D", "#6B6B6B")  # chatter for ever, of one lift-off or another
 CLASS_ORBITS = (ORANGE, BLUE, SKY, VERMILLION, GREEN, PURPLE, YELLOW, "#8C8C8C")  # neighbours differ in lightness
 # on a dark ground: colours that are too dark or too light there; the others are visible on both grounds
@@ -101,6 +101,7 @@ class Pen:
         }
 
 
+# Curves of scenes, figures and notebooks: one look and one name wherever they are drawn.
 PENS = {
     "H": Pen(BLUE, width=2.0, words="horizon $H$"),
     "Z": Pen(VERMILLION, DASHES, 1.8, "zero set $Z$"),
@@ -126,27 +127,25 @@ PENS = {
     "before": Pen(GREY, DASHES, 1.4, "before"),
     "at": Pen(BLACK, DASH_DOT, 1.4, "at the transition"),
 }
-"""Curves of scenes, figures and notebooks: one look and one name wherever they are drawn."""
 
 
+# Line style and width of a branch of periodic orbits; its colour says how many impacts in how many periods.
 LINES: dict[str, tuple[Any, float]] = {"stable": ("solid", 1.8), "unstable": (DASHES, 1.5), "virtual": (DOTS, 1.3)}
-"""Line style and width of a branch of periodic orbits; its colour says how many impacts in how many periods."""
 ORBIT_COLORS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY)
+# Times the width of a line: two colours of about the same grey have widths that differ.
 ORBIT_WIDTHS = (1.0, 1.7, 0.7, 1.0, 0.7, 1.35)
-"""Times the width of a line: two colours of about the same grey have widths that differ."""
+# The label of an axis, for each number of a model.
 LETTERS = {"clearance": "clearance $c$", "restitution": "restitution $r$"}
-"""The label of an axis, for each number of a model."""
-MARKS = {kind.name: kind.marker for kind in KINDS}
-"""Markers of the events of a branch."""
+MARKS = {kind.name: kind.marker for kind in KINDS}  # markers of the events of a branch
 COLORS = {"blue": BLUE, "vermillion": VERMILLION, "green": GREEN, "black": BLACK, "purple": PURPLE}
+# Names that kinds of events have for the colours and line styles of their curves.
 STYLES = {"solid": "solid", "dashes": DASHES, "dash-dot": DASH_DOT}
-"""Names that kinds of events have for the colours and line styles of their curves."""
+# Curves of events in two numbers, where their orbits are visible; virtual parts are dotted.
 EVENT_PENS = {
     kind.name: Pen(COLORS[kind.look.color], STYLES[kind.look.style], kind.look.width)
     for kind in KINDS
     if kind.look is not None
 }
-"""Curves of events in two numbers, where their orbits are visible; virtual parts are dotted."""
 
 
 def orbit_color(n: int, k: int) -> str:

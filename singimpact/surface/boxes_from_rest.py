@@ -12,7 +12,8 @@ as one of the two keeps its sign, there is no such t.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from typing import Any, NamedTuple
 
 from singimpact.algebra.analytic import Recorder
@@ -28,6 +29,7 @@ from singimpact.oscillator.moving_number import CLEARANCE
 PIECES = 5  # times at which a box may touch the wall are cut to this power of 2 of a step
 CUT = 0.4817  # where a piece of a step is cut: off the middle, where no crossing is expected
 NEWTON = 4  # steps of Newton's method for the time of an extremum, at most
+Step = tuple[Tube, Tube, Any]  # x - c and x' on a step, and its length
 
 
 class Lean(NamedTuple):
@@ -139,8 +141,11 @@ class FlightFromRest(CarriedMotion):
         zeros_: list[Any] = []
         near = _NearLaunch()
         while not self.time >= window[1]:
-            value, slope, length = self.tubes()
-            for piece in self._undecided(value, slope, length, near):
+            value, slope, length = step = self.tubes()
+            touching = partial(self._touching, value=value, slope=slope)
+            for _, _, piece in self._divided(step, near, (0.5, PIECES), touching):
+                if piece is None:
+                    continue
                 time = self.time + piece
                 if time < window[0] or time > window[1]:
                     continue
@@ -160,55 +165,53 @@ class FlightFromRest(CarriedMotion):
         undecided: list[Any] = []
         near = _NearLaunch([False, True])
         while not self.time >= window[1]:
-            value, slope, length = self.tubes()
-            for piece, alone in self._crossed(value, slope, length, near):
+            step = self.tubes()
+            for piece, alone in self._crossed(step, near):
                 time = self.time + piece
                 if not (time < window[0] or time > window[1]):
                     (zeros_ if alone else undecided).append(time)
-            self.advance(centre(length))
+            self.advance(centre(step[2]))
         return zeros_, undecided
 
-    def _crossed(self, value: Tube, slope: Tube, length: Any, near: _NearLaunch) -> Iterator[tuple[Any, bool]]:
-        """Pieces of a step on which x - c may vanish, and whether it is shown to do so once."""
-        stack, least = [(flint.arb(0), flint.arb(length))], length * flint.arb(2) ** (-2 * PIECES)
+    def _divided(
+        self, step: Step, near: _NearLaunch, cut: tuple[float, int], left: Callable[[Any], Any]
+    ) -> Iterator[tuple[Any, Any, Any]]:
+        """The ends of pieces of a step on which x - c and x' may vanish, and what is left of each, or None.
+
+        Parameters
+        ----------
+        cut : where a piece is cut of which something is left, and to which power of 2 of the step.
+        """
+        value, slope, length = step
+        stack, least = [(flint.arb(0), flint.arb(length))], length * flint.arb(2) ** -cut[1]
         while stack:
             a, b = stack.pop()
             piece = a.union(b)
-            height, speed = value(piece), slope(piece)
-            higher = self.higher(piece, height, speed) if near else []
+            higher = self.higher(piece, value(piece), slope(piece)) if near else []
             if near.goes_on(higher):
                 continue
-            if height.contains(0) and speed.contains(0) and b - a > least:
-                middle = centre(a + (b - a) * CUT)
+            rest = left(piece)
+            if rest is not None and b - a > least:
+                middle = centre(a + (b - a) * cut[0])
                 stack += [(middle, b), (a, middle)]
                 continue
             near.end(higher)
-            if not height.contains(0):
-                continue
-            ends = value(a) * value(b)
-            if speed.contains(0):
+            yield a, b, rest
+
+    def _crossed(self, step: Step, near: _NearLaunch) -> Iterator[tuple[Any, bool]]:
+        """Pieces of a step on which x - c may vanish, and whether it is shown to do so once."""
+        value, slope, _ = step
+
+        def both(piece: Any) -> Any:
+            return piece if value(piece).contains(0) and slope(piece).contains(0) else None
+
+        for a, b, undecided in self._divided(step, near, (CUT, 2 * PIECES), both):
+            piece, ends = a.union(b), value(a) * value(b)
+            if undecided is not None:
                 yield piece, False
-            elif not ends > 0:
+            elif value(piece).contains(0) and not ends > 0:
                 alone = bool(ends < 0)
                 yield (narrowed(piece, value, slope) if alone else piece), alone
-
-    def _undecided(self, value: Tube, slope: Tube, length: Any, near: _NearLaunch) -> Iterator[Any]:
-        stack, least = [(flint.arb(0), flint.arb(length))], length * flint.arb(2) ** -PIECES
-        while stack:
-            a, b = stack.pop()
-            piece = a.union(b)
-            height, speed = value(piece), slope(piece)
-            higher = self.higher(piece, height, speed) if near else []
-            if near.goes_on(higher):
-                continue
-            left = self._touching(piece, value, slope)
-            if left is not None and b - a > least:
-                middle = centre((a + b) / 2)
-                stack += [(middle, b), (a, middle)]
-                continue
-            near.end(higher)
-            if left is not None:
-                yield left
 
     def _touching(self, piece: Any, value: Tube, slope: Tube) -> Any | None:
         """Where on a piece x - c and x' may both vanish."""

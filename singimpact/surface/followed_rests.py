@@ -177,13 +177,10 @@ class FollowedRests:
                     for j, k, axis in ((n, next_n, 0), (n, next_n, 1), (m, next_m, 1))
                 )
                 start = np.array([s, *sorted(d), before.value + share * (after.value - before.value)])
-                yield from self._triple(start)
-
-    def _triple(self, start: Array) -> Iterator[Rests]:
-        for s, one, two, value in newton(lambda z: np.array([self._three(place) for place in z]), start[None]):
-            gaps = np.array([one, two, two - one])
-            if self._inside(value, gaps.min()) and not is_whole(gaps / self._turn(value)).any():
-                yield Rests("triple point", float(value), float(s), (float(one), float(two)))
+                for s, one, two, value in newton(lambda z: np.array([self._three(point) for point in z]), start[None]):
+                    gaps = np.array([one, two, two - one])
+                    if self._inside(value, gaps.min()) and not is_whole(gaps / self._turn(value)).any():
+                        yield Rests("triple point", float(value), float(s), (float(one), float(two)))
 
     def _three(self, place: Array) -> Array:
         flights = RestFlights(self.family.at(float(place[3])))
@@ -195,16 +192,15 @@ class FollowedRests:
         places = _crossings(np.stack([row[0] for row in rows]), np.stack([row[1] for row in rows]))
         columns = np.arange(len(self.share))
         starts = np.array([[self.values[i], np.interp(at, columns, self.share)] for i, at in places]).reshape(-1, 2)
-        for value, part in distinct(newton(self._missed_after_a_period, starts)):
+        met = newton(lambda z: np.array([np.ravel(self._after_a_period(value, part)) for value, part in z]), starts)
+        for value, part in distinct(met):
             if self._inside(value, self.longest) and abs(part - 0.5) < 0.53:
                 yield Rests("periodic graze", float(value), float(part * self._turn(value)), (self._turn(value),))
 
-    def _missed_after_a_period(self, places: Array) -> Array:
-        return np.array([np.ravel(self._after_a_period(float(value), np.array([part]))) for value, part in places])
-
     def _after_a_period(self, value: float, share: Array) -> tuple[Array, Array]:
-        turn = self._turn(value)
-        return RestFlights(self.family.at(value)).ends(share * turn, np.full(len(share), turn))
+        """x - c and x' a period after rests at some parts of it."""
+        model, start = self.family.at(float(value)), np.atleast_1d(share) * self._turn(float(value))
+        return RestFlights(model).ends(start, np.full(len(start), self._turn(float(value))))
 
 
 def _at_conjugates(d: Array, rows: Array, faster: Array) -> Array:

@@ -10,8 +10,6 @@ cusp       (tau_*, t), t != 0: a cusp of phi; its mirror image on H is a cusp of
 rest       x' = 0 at t != 0: P crosses Pi_0, and Z meets the mirror image of itself
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
@@ -37,41 +35,20 @@ CLOSE = 1e-9  # a vertex this near to a named one makes way for it
 SETTLED = 1e-14  # Newton's last step, relative to 1 + |place|
 
 
-@dataclass(frozen=True)
-class NamedLine:
-    """A polyline on Z with its named vertices; column holds x' at the other end of the flight."""
-
-    points: Array
-    column: Array
-    closed: bool
-    tolerance: float
-    marks: tuple[Mark, ...]
-
-    @classmethod
-    def of(cls, curve: Curve) -> NamedLine:
-        """The line in a curve with three columns, see `curve`."""
-        return cls(curve.points[:, :2], curve.points[:, 2], curve.closed, curve.tolerance, curve.marks)
-
-    @property
-    def curve(self) -> Curve:
-        """The line as a curve with the column x' beside tau and t."""
-        points = np.column_stack([self.points, self.column])
-        return Curve("lines", points, SURFACE, self.marks, self.closed, self.tolerance)
-
-    def parts(self, chosen: Array) -> list[NamedLine]:
-        """The parts of consecutive chosen vertices, their new ends marked "cut"."""
-        whole, last = self.curve, len(self.points) - 1
-        if self.closed and not chosen.all():  # begins where it is not chosen
-            first = int(np.argmin(chosen))
-            turned = (np.arange(last + 1) + first) % last
-            marks = tuple(Mark((mark.index - first) % last, mark.name) for mark in self.marks)
-            whole, chosen = replace(whole, points=whole.points[turned], marks=marks, closed=False), chosen[turned]
-        pieces = [piece for piece in whole.parts(chosen) if len(piece) > 1]
-        for at, piece in enumerate(pieces):
-            new = {0, len(piece) - 1} - {mark.index for mark in piece.marks}
-            if not piece.closed:
-                pieces[at] = replace(piece, marks=(*piece.marks, *(Mark(end, "cut") for end in new)))
-        return [NamedLine.of(piece) for piece in pieces]
+def _parts(line: Curve, chosen: Array) -> list[Curve]:
+    """The parts of consecutive chosen vertices, their new ends marked "cut"."""
+    last = len(line) - 1
+    if line.closed and not chosen.all():  # begins where it is not chosen
+        first = int(np.argmin(chosen))
+        turned = (np.arange(last + 1) + first) % last
+        marks = tuple(Mark((mark.index - first) % last, mark.name) for mark in line.marks)
+        line, chosen = replace(line, points=line.points[turned], marks=marks, closed=False), chosen[turned]
+    pieces = [piece for piece in line.parts(chosen) if len(piece) > 1]
+    for at, piece in enumerate(pieces):
+        new = {0, len(piece) - 1} - {mark.index for mark in piece.marks}
+        if not piece.closed:
+            pieces[at] = replace(piece, marks=(*piece.marks, *(Mark(end, "cut") for end in new)))
+    return pieces
 
 
 @dataclass(frozen=True)
@@ -82,8 +59,8 @@ class _Named:
     name: str
 
 
-def named(line: Polyline, zeros: Sequence[float], flights: RestFlights) -> NamedLine:
-    """The line with its named points as vertices.
+def named(line: Polyline, zeros: Sequence[float], flights: RestFlights) -> Curve:
+    """The line with its named points as vertices, and the column x' at the other end of the flight.
 
     Parameters
     ----------
@@ -105,7 +82,7 @@ def named(line: Polyline, zeros: Sequence[float], flights: RestFlights) -> Named
         column = np.insert(column, at, [vertex.velocity for vertex in vertices])
     if not line.closed:
         marks += [Mark(0, "end"), Mark(len(points) - 1, "end")]
-    return NamedLine(points, column, line.closed, line.tolerance, tuple(marks))
+    return Curve("lines", np.column_stack([points, column]), SURFACE, tuple(marks), line.closed, line.tolerance)
 
 
 def _without_crowds(
@@ -283,21 +260,21 @@ class ImpactSurface:
         return [(point, tau) for point, tau in found if low <= tau <= high]
 
     @cached_property
-    def lines(self) -> list[NamedLine]:
-        """Z with its named points and x' at the other end; H and P follow from it by symmetry."""
+    def lines(self) -> list[Curve]:
+        """Z with its named points and a column x' at the other end; H and P follow from it by symmetry."""
         return self.divided[0]
 
     @cached_property
-    def divided(self) -> tuple[list[NamedLine], list[NamedLine]]:
+    def divided(self) -> tuple[list[Curve], list[Curve]]:
         """`lines`, and those parts of Z whose flights meet the other wall."""
         plain = traced(self._rest.grid, self._rest.y_and_gradient, self.window, self._cell, self._speed)
         zeros = [tau for _, tau in self.placed_tangencies]
         lines = [named(line, zeros, self._rest) for line in plain]
         if self._other is None:
             return lines, []
-        met = [self._other.is_met(*line.points.T) for line in lines]
+        met = [self._other.is_met(*line.points[:, :2].T) for line in lines]
         inside, outside = (
-            [piece for line, chosen in zip(lines, sides, strict=True) for piece in line.parts(chosen)]
+            [piece for line, chosen in zip(lines, sides, strict=True) for piece in _parts(line, chosen)]
             for sides in ([~chosen for chosen in met], met)
         )
         return inside, outside
@@ -317,7 +294,7 @@ class ImpactSurface:
     def zero_set(self) -> list[Curve]:
         """Z: (tau, t) with v_c = 0, t != 0; `visible` where it is a first hit [s2-zero-set]."""
         first = partial(self._are_first, model=self.model, sign=1)
-        return [_curve("Z", line.points, SURFACE, line, partial(first, line)) for line in self.lines]
+        return [_curve("Z", line.points[:, :2], SURFACE, line, partial(first, line)) for line in self.lines]
 
     @cached_property
     def horizon(self) -> list[Curve]:
@@ -330,7 +307,7 @@ class ImpactSurface:
         """P = p(H) = phi(Z): (tau, v) of the launches that graze."""
         pairs = ((line, partial(getattr, back, "visible")) for line, back in zip(self.lines, self.horizon, strict=True))
         return [
-            _curve("P", np.stack([line.points.sum(axis=1), line.column], axis=1), STATES, line, visible)
+            _curve("P", np.stack([line.points[:, :2].sum(axis=1), line.points[:, 2]], axis=1), STATES, line, visible)
             for line, visible in pairs
         ]
 
@@ -338,7 +315,11 @@ class ImpactSurface:
     def beyond(self) -> list[Curve]:
         """The parts of Z and H that a second wall takes away: their flights meet it."""
         lines = [replace(line, marks=()) for line in self.divided[1]]
-        return [_curve("beyond", points, SURFACE, line) for line in lines for points in (line.points, _involved(line))]
+        return [
+            _curve("beyond", points, SURFACE, line)
+            for line in lines
+            for points in (line.points[:, :2], _involved(line))
+        ]
 
     @cached_property
     def cut(self) -> list[Curve]:
@@ -359,7 +340,7 @@ class ImpactSurface:
     def cusps(self) -> list[Cusp]:
         """The cusps of p and phi in the window."""
         cusps = [
-            Cusp(*map(float, (*line.points[mark.index], line.column[mark.index])))
+            Cusp(*map(float, line.points[mark.index]))
             for line in self.lines
             for mark in line.marks
             if mark.name == "cusp"
@@ -377,9 +358,9 @@ class ImpactSurface:
             found += [part for part in made.parts(curve.visible & np.isfinite(ahead)) if len(part) > 1]
         return found
 
-    def _are_first(self, line: NamedLine, model: Oscillator, sign: int) -> Array:
+    def _are_first(self, line: Curve, model: Oscillator, sign: int) -> Array:
         """Whether t, of that sign, is the first hit of the flight from rest; run back, the graze is first then."""
-        tau, t = sign * line.points.T
+        tau, t = sign * line.points[:, :2].T
         hits = self._hits(model, tau, t > 0)
         with np.errstate(invalid="ignore"):
             return np.asarray(np.isfinite(hits) & (t > 0) & (np.abs(hits - t) <= SAME * (1 + t)))
@@ -393,13 +374,13 @@ class ImpactSurface:
         return times
 
 
-def _involved(line: NamedLine) -> Array:
+def _involved(line: Curve) -> Array:
     """The vertices of H that belong to those of Z."""
-    return np.stack([line.points.sum(axis=1), -line.points[:, 1]], axis=1)
+    return np.stack([line.points[:, :2].sum(axis=1), -line.points[:, 1]], axis=1)
 
 
 def _curve(
-    name: str, points: Array, axes: tuple[str, str], line: NamedLine, first: Callable[[], Array] | Array = NOWHERE
+    name: str, points: Array, axes: tuple[str, str], line: Curve, first: Callable[[], Array] | Array = NOWHERE
 ) -> Curve:
     return Curve(name, points, axes, line.marks, line.closed, line.tolerance, first)
 

@@ -33,8 +33,8 @@ class CutSettings:
 
 
 SETTINGS = CutSettings()
+# Columns of `OtherWall.grazes`: launch time and flight time, launch time and velocity.
 TO_LAND, TO_LAUNCH = (0, 2), (0, 1)
-"""Columns of `OtherWall.grazes`: launch time and flight time, launch time and velocity."""
 
 
 def at_lower_wall(flights: Flight) -> Array:

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.expressions import evaluate
-from singimpact.algebra.numbers import Array, as_float
+from singimpact.algebra.numbers import Array
 from singimpact.algebra.precision import kept_property
 from singimpact.algebra.rings import DOUBLES
 from singimpact.contact.points import tangency_points
@@ -31,19 +31,18 @@ from singimpact.surface.curve import window_ends
 from singimpact.surface.followed_rests import FollowedRests, doubts_of_rests, gaps_of, met_rests
 from singimpact.surface.proved_touches import doubts_left
 from singimpact.surface.rest_flights import RestFlights
-from singimpact.surface.swan_families import STEPS, Family, Transition, bracketed, swans_met, told
-from singimpact.surface.two_rests import Rests, linear_rests
+from singimpact.surface.swan_families import STEPS, Family, Transition, bracketed, in_first_period, swans_met, told
+from singimpact.surface.two_rests import Rests, linear_rests, newton
 
 
 @dataclass(frozen=True)
 class TransitionSettings:
     """same : relative distance below which two of them are one; Newton's method ends at a thousandth of it.
-    samples : of a flight in the window of t. settled : Newton's last step. flat : a Hessian below this share of its
+    samples : of a flight in the window of t. flat : a Hessian below this share of its
     terms decides nothing. double : of t, to which Newton's method meets a double zero.
     """
 
     samples: int = 400
-    settled: float = 1e-12
     same: float = 1e-9
     flat: float = 1e-6
     double: float = 1e-2
@@ -186,12 +185,8 @@ def at_wall(
     low, high = window_ends(over, between)
     mirrored = transitions(seen, CLEARANCE, (-high, -low), t, kinds)
     turned = Transitions(replace(event, value=-event.value) for event in reversed(mirrored))
-    turned.notes, turned._proof = mirrored.notes, partial(_doubts_of_mirrored, mirrored)
+    turned.notes, turned._proof = mirrored.notes, lambda _: mirrored.doubts[len(mirrored.notes) :]
     return turned
-
-
-def _doubts_of_mirrored(mirrored: Transitions, _: Transitions) -> tuple[str, ...]:
-    return mirrored.doubts[len(mirrored.notes) :]
 
 
 def _kinds(given: Any) -> frozenset[str]:
@@ -232,7 +227,7 @@ def _with_more_rests(
             flights = RestFlights(family.at(meeting.value))
             back = flights.by_speed(np.array([meeting.first]), np.array([gap]))[0, 1]
             kind = "tacnode, opposite" if back < 0 else "tacnode, same"
-        first = _reduced(meeting.first, family.at(meeting.value))
+        (first,) = in_first_period((meeting.first,), family.at(meeting.value))
         rests = (first, *(first + offset for offset in meeting.gaps))
         if any(low <= sign * gap <= high for sign in (1, -1) for low, high in [_widened(times)]):
             events.append(Transition(kind, meeting.value, first, gap, rests))
@@ -254,7 +249,7 @@ def _tangencies(family: Family, values: Array, times: tuple[float, float]) -> li
             s, d = rests.first, rests.gaps[0]
             tau, t = (s + d, -d) if rests.kind == "tangency last" else (s, d)
             if rests not in both and times[0] <= t <= times[1]:
-                point = np.array([_reduced(tau, family.model), t, rests.value])
+                point = np.array([*in_first_period((tau,), family.model), t, rests.value])
                 kind = _lips_or_beaks(RestFlights(family.at(rests.value)), point)
                 events.append(Transition(kind, rests.value, float(point[0]), t, _two(tau, t)))
     else:
@@ -268,7 +263,7 @@ def _tangencies(family: Family, values: Array, times: tuple[float, float]) -> li
         Transition(
             rests.kind,
             rests.value,
-            s := _reduced(rests.first, family.at(rests.value)),
+            s := in_first_period((rests.first,), family.at(rests.value))[0],
             rests.gaps[0],
             (s, s + rests.gaps[0]),
         )
@@ -285,15 +280,6 @@ def _two(tau: float, t: float) -> tuple[float, float]:
 def _is_that(found: Transition, both: Rests) -> bool:
     """Whether what Newton's method met is the flight from tangency to tangency, a double zero of its equations."""
     return abs(found.value - both.value) < 1e-6 and abs(abs(found.t) - both.gaps[0]) < SETTINGS.double
-
-
-def _reduced(tau: float, model: Oscillator) -> float:
-    """A time in the first period of a model, where it has one."""
-    if model.period is None:
-        return tau
-    period = as_float(model.period)
-    moved = float(tau - np.floor(tau / period + SETTINGS.same) * period)
-    return moved if abs(moved) > SETTINGS.settled * period else 0.0
 
 
 def _each_once(found: Iterable[Transition], ends: tuple[float, float]) -> list[Transition]:
@@ -373,7 +359,7 @@ def _humps(model: Oscillator, times: tuple[float, float]) -> Iterator[tuple[floa
 
 
 def _touch(family: Family, start: Array) -> Transition | None:
-    """a = 0, x = c, x' = 0 by Newton's method in (tau, t, value), the matrix by central differences."""
+    """a = 0, x = c, x' = 0 by Newton's method in (tau, t, value)."""
     tree = family.acceleration()
 
     def missed(point: Array) -> Array:
@@ -381,16 +367,11 @@ def _touch(family: Family, start: Array) -> Transition | None:
         a = evaluate(tree, {"t": float(point[0]), family.over: float(point[2])}, DOUBLES)
         return np.array([float(a), float(height[0]), float(velocity[0])])
 
-    point = start.copy()
-    for _ in range(40):
-        matrix = np.stack([(missed(point + h) - missed(point - h)) / 2e-6 for h in 1e-6 * np.eye(3)], axis=1)
-        move = np.linalg.solve(matrix, -missed(point))
-        point = point + np.clip(move, -0.2, 0.2)
-        if np.abs(move).max() < SETTINGS.settled * (1 + np.abs(point).max()):
-            flights = RestFlights(family.at(float(point[2])))
-            tau, t, value = point.tolist()
-            return Transition(_lips_or_beaks(flights, point), value, tau, t, _two(tau, t))
-    return None
+    met = newton(lambda points: np.array([missed(point) for point in points]), start[None])
+    if not len(met):
+        return None
+    tau, t, value = met[0].tolist()
+    return Transition(_lips_or_beaks(RestFlights(family.at(value)), met[0]), value, tau, t, _two(tau, t))
 
 
 def _lips_or_beaks(flights: RestFlights, point: Array) -> str:

@@ -1,9 +1,11 @@
 """Swans of a model over one parameter, isolated with proof, and their curves over two."""
 
+import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -215,39 +217,7 @@ class SightSettings:
 
 SIGHT = SightSettings()
 # What a visible transition does in one direction of the number; in the other one it is undone.
-WORDS = {
-    "swan, negative": "an arc delta of discontinuities is born, with gamma at its foot and the loops round its tip",
-    "swan, positive": "the arcs delta of two neighbours join: one ends on the other in a T-junction",
-    "swallowtail": "above a positive swan two cusps of P and a crossing are born: delta gets one T-junction",
-    "tacnode, opposite": (
-        "a lens of launches opens that miss both rests: delta gets two T-junctions, or on v = 0 two more feet; gamma, "
-        "or an arc of W^s with its loops, is cut twice more where it crosses the lens"
-    ),
-    "tacnode, same": (
-        "a piece of delta comes out from behind another arc: two T-junctions; gamma, or an arc of W^s with its loops, "
-        "is cut twice more where it crosses that piece"
-    ),
-    "tangency last": (
-        "the tip of delta goes behind another arc and ends there in a T-junction: the loops round the tip are lost to "
-        "that arc; gamma at the foot stays"
-    ),
-    "tangency first": (
-        "delta meets the foot A of gamma: on one side of A it ends at the height 3 a' sigma^2/8, on the other at "
-        "v = 0; gamma stays, but W^s(X) has the 2-jet of this arc, so that the chattering orbit released at A grazes "
-        "and the loops at X break"
-    ),
-    "tangency to tangency": (
-        "the flight released at one tangency point is at rest at another: the tip of delta meets an arc as that arc "
-        "meets the foot of gamma, and the loops of both break"
-    ),
-    "triple point": (
-        "two T-junctions of delta trade places: one cut goes over to another arc, and cuts of loops with it; "
-        "gamma stays"
-    ),
-    "periodic graze": (
-        "the motion without impact meets the wall: arcs delta accumulate on it, and cuts of gamma and of its loops too"
-    ),
-}
+EFFECTS = tomllib.loads(Path(__file__).with_name("effects.toml").read_text(encoding="utf-8"))
 BEYOND = "no first hit changes between impacts with this wall: the flight meets the other one"
 HIDDEN = "no first hit changes: the flight meets the wall from below, or passes through it between its rests"
 UNDECIDED = "the flight touches the wall once more, so that it is not decided whether first hits change"
@@ -260,9 +230,9 @@ def told(event: Transition, model: Oscillator) -> Transition:
     ----------
     event : with its rests. model : at the value of the transition; its upper wall, if it has one, takes away flights.
     """
-    rests = _in_first_period(event.rests, model)
+    rests = in_first_period(event.rests, model)
     visible, launch = _seen(event, rests, model if model.upper is None else model.one_wall())
-    words = UNDECIDED if visible is None else (WORDS.get(event.kind) or WORDS[event.event]) if visible else HIDDEN
+    words = UNDECIDED if visible is None else (EFFECTS.get(event.kind) or EFFECTS[event.event]) if visible else HIDDEN
     if visible and model.upper is not None:
         ends = np.array([rests[-1], rests[0] if launch is None else launch[0]])
         if OtherWall(model).is_met(np.full(2, rests[0]), ends - rests[0]).any():
@@ -270,7 +240,8 @@ def told(event: Transition, model: Oscillator) -> Transition:
     return replace(event, rests=rests, visible=visible, launch=launch, effect=words)
 
 
-def _in_first_period(rests: tuple[float, ...], model: Oscillator) -> tuple[float, ...]:
+def in_first_period(rests: tuple[float, ...], model: Oscillator) -> tuple[float, ...]:
+    """Times moved by whole periods of a model, where it has one, the first of them into [0, T)."""
     if model.period is None:
         return rests
     period = as_float(model.period)

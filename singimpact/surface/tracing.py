@@ -67,10 +67,13 @@ def traced(grid: Grid, gradient: Gradient, window: Window, cell: float, scale: f
     grid, gradient : y on a grid; y, its gradient, a further column and the gradient of that at points.
     cell : the largest cell that resolves y. scale : of the column, beside the size of the window, for the spacing.
     """
+    from contourpy import LineType, contour_generator
+
     axes = _axes(window, cell)
     values = grid(*axes)
     small = (_followed(seed, gradient, window, size) for seed, size in _small_ones(grid, axes, values, window))
-    sketched = (*(_thinned(line, window.least) for line in _sketched(axes, values)), *small)
+    contours = contour_generator(*axes, values, line_type=LineType.Separate).lines(0.0)
+    sketched = (*(_thinned(np.asarray(line), window.least) for line in contours if len(line) > 1), *small)
     refined = [one for line in sketched if (one := _on_curve(line, gradient, window, scale, cell)) is not None]
     lines_: list[Polyline] = []
     for line in sorted(refined, key=lambda one: -float(np.ptp(one.points, axis=0).sum())):
@@ -96,13 +99,6 @@ def _axes(window: Window, cell: float) -> tuple[Array, Array]:
     chords = window.sides[0] / (SETTINGS.longest * window.least)
     finer = float(np.clip(chords / cells(window.x), 1, SETTINGS.finer_tau))
     return axis(window.x, finer), axis(window.y, SETTINGS.finer_t)
-
-
-def _sketched(axes: tuple[Array, Array], values: Array) -> list[Array]:
-    from contourpy import LineType, contour_generator
-
-    made = contour_generator(*axes, values, line_type=LineType.Separate).lines(0.0)
-    return [np.asarray(line) for line in made if len(line) > 1]
 
 
 def _thinned(line: Array, least: float) -> Array:

@@ -10,9 +10,11 @@ import pkgutil
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
+from itertools import permutations
 from pathlib import Path
 from types import ModuleType
 
+import numpy as np
 import pytest
 
 from singimpact.case_keys import function_key
@@ -99,6 +101,9 @@ VARIANTS = {
     "the name of a field": "A = np.array([(1.0, 2.0)], dtype=[('{k|m}', 'f8'), ('{m|k}', 'f8')])\n"
                "def f(v): return float(A['k'][0])*v",
     "a polynomial": "p = np.polynomial.Polynomial([0, {1|2}])\ndef f(v): return float(p(v))",
+    "a compiled pattern": "import re\np = re.compile('{a|b}')\ndef f(v): return len(p.findall('aab'))*v",
+    "an abstract method": "import abc\nclass A(abc.ABC):\n    @abc.abstractmethod\n    def k(self): return {1|2}\n"
+               "class B(A):\n    def k(self): return super().k()\np = B()\ndef f(v): return p.k()*v",
     "an expression of sympy": "import sympy\ne = {1|2}*sympy.Symbol('x')\ndef f(v): return float(e.subs('x', v))",
     "a function of a module": ("R = 2.0\ndef scale(v):\n    return {1|2}*v", "def f(v): return units.scale(v)"),
     "a number of a module": ("R = {1.0|2.0}", "def f(v): return units.R*v"),
@@ -163,6 +168,14 @@ class NoPool:
 
     def submit(self, *_):
         raise AssertionError("a result was computed")
+
+
+@pytest.mark.plain_code
+def test_reading_a_key_does_not_change_it():
+    """Python stores the names of slots in a class when one of its objects is read for the first time."""
+    for name in VARIANTS:
+        function = built(VARIANTS[name])
+        assert function_key(function) == function_key(function), name
 
 
 @pytest.mark.plain_code
@@ -281,3 +294,21 @@ def test_what_has_no_key_is_refused_by_its_name(name, tmp_path):
         with pytest.raises(InputError, match=r"has no key for stored results, .*: leave output= out, or"):
             sweep(function, [1.0], pool, tmp_path / "stored.npz")
         assert not list(tmp_path.iterdir())
+
+
+ALIKE = (
+    ([1, 2], [12], [True], [1.0], ["1"], [(1, 2)], [[1], 2], [[1, 2]], [np.int64(1), 2]),
+    (["a", "b"], ["ab"], ["a str 1 b"], [b"a"], ["b'a'"], ["\ud800"], ["\\ud800"], ["None"], [None]),
+    ([0.0], [-0.0], [2**70], [float(2**70)], [np.float64(0)], [float("nan")]),
+)
+
+
+@pytest.mark.parametrize("alike", ALIKE)
+def test_results_of_cases_that_look_alike_are_not_returned(alike, tmp_path):
+    with ThreadPoolExecutor(1) as pool:
+        for number, (first, second) in enumerate(permutations(alike, 2)):
+            output = tmp_path / f"{number}.npz"
+            for _ in range(2):
+                assert sweep(lambda _: 1.0, first, pool, output).size == len(first)
+            with pytest.raises(InputError, match="other cases"):
+                sweep(lambda _: 1.0, second, pool, output)

@@ -246,7 +246,7 @@ def test_the_line_of_progress_moves_while_nothing_ends(monkeypatch):
 def test_a_worker_sweeps_by_itself(monkeypatch):
     assert isinstance(place_of(None, abs, [1]), case_pools.Processes)
     monkeypatch.setattr(case_pools, "_OURS", [True])
-    assert isinstance(place_of(None, abs, [1]), Here)
+    assert isinstance(place_of(None, abs, [1]).executor, Here)
 
 
 def nested(count):
@@ -338,7 +338,7 @@ def test_the_width_of_a_cluster_is_its_cores_and_not_ours(cluster, monkeypatch):
     assert place.width == 4
     assert place_of(cluster.get_executor(), abs, [1]).width == 4
     cluster.cluster.scale(2)
-    monkeypatch.setattr(case_pools, "CLUSTER", case_pools.ClusterSettings(interval=0.0))
+    monkeypatch.setattr(case_pools, "PLACE", case_pools.PlaceSettings(interval=0.0))
     for _ in range(300):
         if place.width == 2:
             break

@@ -17,8 +17,7 @@ if TYPE_CHECKING:
     from singimpact.branches.orbits import PeriodicOrbit
 
 
-NEAR = 1e-6
-"""How far, relative to 1 or the parameter, an event in doubles is from the one that is proved."""
+NEAR = 1e-6  # how far, relative to 1 or the parameter, an event in doubles is from the one that is proved
 
 
 @dataclass(frozen=True, eq=False)

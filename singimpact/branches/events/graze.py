@@ -17,8 +17,7 @@ if TYPE_CHECKING:
     from singimpact.branches.orbits import PeriodicOrbit
     from singimpact.branches.solutions import AnyClosing
 
-DEGENERATE = 1e-6
-"""a_c at the graze, of the largest a_c in a period, below which the graze is called degenerate."""
+DEGENERATE = 1e-6  # a_c at the graze, of the largest a_c in a period, below which the graze is called degenerate
 
 
 class TouchingKind(EventKind):

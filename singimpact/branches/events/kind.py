@@ -15,10 +15,8 @@ if TYPE_CHECKING:
     from singimpact.branches.orbits import PeriodicOrbit
     from singimpact.branches.solutions import AnyClosing
 
-NEAR = 1e-3
-"""Distance of a multiplier of a limit cycle from that of its event."""
-Indexed = Iterator[tuple[int, int, Test]]
-"""Impact or flight, which of its minima, and the test there."""
+NEAR = 1e-3  # distance of a multiplier of a limit cycle from that of its event
+Indexed = Iterator[tuple[int, int, Test]]  # impact or flight, which of its minima, and the test there
 
 
 class CurveLook(NamedTuple):

@@ -13,8 +13,8 @@ from singimpact.branches.events.orbit_state import OrbitState
 if TYPE_CHECKING:
     from singimpact.branches.solutions import AnyClosing
 
+# Parts of an orbit that differ by less, in scaled unknowns, where the branch comes near an orbit that repeats them.
 ALIKE = 1e-3
-"""Parts of an orbit that differ by less, in scaled unknowns, where the branch comes near an orbit that repeats them."""
 
 
 class BranchPointKind(ReturnMapKind):

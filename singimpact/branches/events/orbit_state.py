@@ -13,8 +13,8 @@ if TYPE_CHECKING:
     from singimpact.branches.solutions import AnyClosing
 
 Array = np.ndarray[Any, Any]
+# A forward difference along the tangent, in scaled unknowns: rates then have a relative error of 1e-6 or less.
 NUDGE = 1e-6
-"""A forward difference along the tangent, in scaled unknowns: rates then have a relative error of 1e-6 or less."""
 
 
 class Test(NamedTuple):

@@ -16,8 +16,7 @@ from singimpact.inputs import InputError, refuse
 if TYPE_CHECKING:
     from singimpact.branches.orbits import PeriodicOrbit
 
-TOUCHING = 1e-12
-"""Height above the wall that is a rounding error."""
+TOUCHING = 1e-12  # height above the wall that is a rounding error
 ACCEPTED = "a list of functions of an orbit that have a name, or of objects with .name and .test"
 
 

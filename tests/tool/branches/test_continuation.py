@@ -24,7 +24,7 @@ class Circle:
 
 
 def followed(circle: Circle, start: list[float], most: int) -> tuple[np.ndarray, str]:
-    curve = Curve(circle, np.ones(2), 0.1)
+    curve = Curve(circle.equations, np.ones(2), 0.1)
     begin = curve.begin(np.array(start), np.array([0.0, 1.0]))
     assert begin is not None
     return np.array([after.at for _, _, after in curve.walk(begin, most)]), curve.note

@@ -20,7 +20,7 @@ from singimpact.branches import (
     Spans,
     TouchingClosing,
     enclosed_event as room,
-    rate_of,
+    kind_of,
     rate_over,
     return_slope,
 )
@@ -267,10 +267,10 @@ def test_the_curve_is_shown_to_stay_where_its_rate_is_bounded(doubling, monkeypa
 @pytest.mark.slow
 def test_a_test_that_vanishes_at_no_rate_is_refused(doubling, monkeypatch):
     """The cube of the test has the same signs, and its rate vanishes where it does."""
-    honest, rate = room.event_function, room.rate_over
+    rate = room.rate_over
 
     def cubed(kind, closing, operator, point, radius):
-        value = honest(kind, return_slope(closing.slopes(point, radius)))
+        value = kind_of(kind).of_return_map(return_slope(closing.slopes(point, radius)))
         return 3 * value**2 * rate(kind, closing, operator, point, radius)
 
     monkeypatch.setattr(room, "rate_over", cubed)
@@ -290,7 +290,7 @@ def test_the_rate_is_that_of_differences(kind, duffing):
         point = operator.solved([*near, Fraction(event.parameter)])
         step = Fraction(1, 10**6)
         ends = [operator.solved(operator.moved(point, shift)) for shift in (-step, step)]
-        low, high = (room.event_function(kind, return_slope(closing.slopes(end, operator.small))) for end in ends)
+        low, high = (kind_of(kind).of_return_map(return_slope(closing.slopes(end, operator.small))) for end in ends)
         rate = rate_over(kind, closing, operator, point, Fraction(1, 10**9))
         truth = float(((high - low) / (2 * Balls(200).rational(step))).mid())
         assert float(rate.mid()) == pytest.approx(truth, rel=1e-6, abs=1e-8)  # d = r^4 e^(-b T) is constant here
@@ -301,8 +301,10 @@ def test_the_rate_is_that_of_differences(kind, duffing):
 @pytest.mark.parametrize("kind", ["fold", "period-doubling", "torus"])
 def test_the_rate_of_a_matrix_is_that_of_differences(kind):
     at, change, h = flint.arb_mat([[2, 3], [5, 7]]), flint.arb_mat([[1, -4], [6, 9]]), flint.arb(2) ** -20
-    high, low = (room.event_function(kind, at + change * side) for side in (h, -h))
-    assert abs((high - low) / (2 * h) - rate_of(kind, at, change)) < 1e-9  # quadratic: rounding alone
+    high, low = (kind_of(kind).of_return_map(at + change * side) for side in (h, -h))
+    assert (
+        abs((high - low) / (2 * h) - kind_of(kind).rate_of_return_map(at, change)) < 1e-9
+    )  # quadratic: rounding alone
 
 
 # ---- statements that are wrong

@@ -67,8 +67,8 @@ def test_launches_on_both_sides_of_the_cut_come_to_this_wall_and_to_the_other(wa
 @pytest.mark.parametrize(("model", "wall"), MODELS)
 def test_curves_are_those_of_one_wall_where_the_other_is_not_met(model, wall):
     surface, alone = ImpactSurface(model, *WINDOW, wall=wall), ImpactSurface(model.one_wall(wall), *WINDOW)
-    own = {tuple(point) for line in alone.lines for point in line.points.tolist()}
-    kept = {tuple(point) for line in surface.lines for point in line.points.tolist()}
+    own = {tuple(point) for line in alone.lines for point in line.points[:, :2].tolist()}
+    kept = {tuple(point) for line in surface.lines for point in line.points[:, :2].tolist()}
     assert kept <= own
     left_out = np.array(sorted(own - kept))
     assert len(left_out) if model is DUFFING else True
@@ -83,7 +83,7 @@ def test_curves_are_those_of_one_wall_where_the_other_is_not_met(model, wall):
 
 def test_lines_end_at_the_cut_and_a_closed_one_is_cut_open():
     surface = ImpactSurface(DUFFING, *WINDOW)
-    ends = [line.points[mark.index] for line in surface.lines for mark in line.marks if mark.name == "cut"]
+    ends = [line.points[mark.index, :2] for line in surface.lines for mark in line.marks if mark.name == "cut"]
     assert ends
     tips = np.vstack([curve.points[[0, -1]] for curve in surface.cut])
     assert min(np.hypot(*(tip - end)) for tip in tips for end in ends) < 0.05
@@ -93,7 +93,7 @@ def test_lines_end_at_the_cut_and_a_closed_one_is_cut_open():
 def test_visible_points_are_first_hits_of_both_walls():
     surface = ImpactSurface(DUFFING, *WINDOW)
     for line, curve in zip(surface.lines, surface.horizon, strict=True):
-        states = np.column_stack([line.points.sum(axis=1), line.column])[curve.visible][5:-5:5]
+        states = np.column_stack([line.points[:, :2].sum(axis=1), line.points[:, 2]])[curve.visible][5:-5:5]
         for (tau, v), t in zip(states, curve.points[curve.visible][5:-5:5, 1], strict=True):
             if v > 1e-2:
                 step = DUFFING.impact_map(tau, v - 1e-9)
