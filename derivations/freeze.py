@@ -1,4 +1,4 @@
-"""Write this folder, the golden equations, the index of the claims and generated/: `python derivations/freeze.py`.
+"""Write this folder, the golden equations and statements, and generated/: `python derivations/freeze.py`.
 
 The same as `singimpact derive -o derivations`, and from the same sections the LaTeX of each displayed equation, which
 the suite compares; the words around the equations may change freely.
@@ -11,8 +11,6 @@ from pathlib import Path
 
 from singimpact.documents.document_steps import Section, equations_of
 from singimpact.documents.rendering import Marks, as_files
-from singimpact.paper.claims.beyond import BEYOND
-from singimpact.paper.claims.index import BEYOND_PLACE, PLACE, reread, written_index
 from singimpact.paper.sections.derivation_sections import sections
 from singimpact.paper.sections.stored_sections import marks_of
 from singimpact.store import folder, written
@@ -47,11 +45,6 @@ def statements() -> dict[Path, bytes]:
     return {GOLDEN / "statements.json": (json.dumps(told, indent=2) + "\n").encode()}
 
 
-def claim_index() -> dict[Path, bytes]:
-    """The indices of the paper's claims and of those beyond it, from the files that they are written in."""
-    return {PLACE: written_index().encode(), BEYOND_PLACE: written_index(BEYOND).encode()}
-
-
 def generated() -> dict[Path, bytes]:
     """The source under singimpact/generated: from theory and codegen alone, so it works with that folder emptied."""
     from singimpact.theory.frozen import completion_module
@@ -61,11 +54,10 @@ def generated() -> dict[Path, bytes]:
 
 def main() -> None:
     """Write them all."""
-    for path, content in {**generated(), **claim_index()}.items():  # first: what follows may use them
+    for path, content in generated().items():  # first: what follows may use them
         with written(path) as draft:
             draft.write_bytes(content)
         print(path.relative_to(HERE.parent))
-    reread()
     told = sections()
     folder(GOLDEN)
     for path, content in {**derivations(told, marks_of(told)), **golden(told), **statements()}.items():

@@ -33,7 +33,6 @@ _FILES = {
     "kernels.roots": "first_root",
     "kernels.state": "Search TIME_BY_V Work",
     "machine": "Machine machine_of",
-    "model_numbers": "numbers_of",
     "no_return.barrier": "SEARCH fastest_kept kept_up stays_up",
     "no_return.polynomial": "never_returns never_turns",
     "orbits": "iterate orbit_segment",

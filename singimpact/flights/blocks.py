@@ -14,10 +14,10 @@ from singimpact.flights.results import Flight
 from singimpact.inputs import InputError, require_memory
 from singimpact.status import status_array
 
+# Numbers that few flights have
 SPARSE = ("depth", "bound")
-"""Numbers that few flights have."""
+# Fields that are filled for any arrays of the caller
 ALWAYS = ("status", "cause", "wall")
-"""Fields that are filled for any arrays of the caller."""
 
 
 @dataclass(frozen=True)

@@ -13,8 +13,8 @@ from singimpact.flights.model_numbers import recurrence_of
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Cause, Status
 
+# The codes of `march` that are no statuses
 ENDED = {5: Cause.near_graze, 21: Cause.step_budget, 22: Cause.domain_left, 23: Cause.overflow}
-"""The codes of `march` that are no statuses."""
 
 
 def decoded(codes: Array) -> tuple[Array, Array]:

@@ -10,13 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.expressions import names_in, substitute
-from singimpact.algebra.numbers import Array, as_float
+from singimpact.algebra.expressions import names_in
+from singimpact.algebra.numbers import Array
 from singimpact.algebra.precision import kept_property
-from singimpact.codegen.scalar import scalar
 from singimpact.codegen.taylor_recurrence import Recurrence
-from singimpact.flights.bind import LAW, Emitted
-from singimpact.flights.flat_numbers import TABLES, walls_laid_out
+from singimpact.flights.bind import Emitted
+from singimpact.flights.flat_numbers import TABLES, Numbers, laid_out
 from singimpact.flights.horizons import Allowance, horizon_of, reach_of, steps_of
 from singimpact.flights.interpreted import LEFT_OPEN, Interpreter
 from singimpact.flights.interruptible import LONG, interruptible, shared_out, threads_now
@@ -30,20 +29,19 @@ from singimpact.flights.model_numbers import has_table, recurrence_of
 from singimpact.flights.results import count_flights
 from singimpact.flights.states import late
 from singimpact.inputs import InputError
-from singimpact.oscillator.linear import linear_form
+from singimpact.oscillator.linear import form_of, linear_form
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.period import reduced
-from singimpact.oscillator.rebound import rho_of
 
+# Kinds of work that fill the tables which an entry reads
 PREPARATIONS = {"linear_entry": entries.PREPARE, "batch_entry": entries.PREPARE_BATCH}
-"""Kinds of work that fill the tables which an entry reads."""
+# Kinds of work that look for hits; they return codes too
 SEARCHES = (entries.HITS, entries.DROPS)
-"""Kinds of work that look for hits; they return codes too."""
 INTERPRETED: dict[int, Callable[..., None]] = {
     entries.RELEASES: Interpreter.releases, entries.PLACES: Interpreter.places,
     entries.VARIATIONS: Interpreter.variations}  # fmt: skip
+# An entry and a kind of work
 Work = tuple[Callable[..., int], int]
-"""An entry and a kind of work."""
 
 
 @lru_cache(maxsize=256)
@@ -58,31 +56,36 @@ def allowed(osc: Oscillator, allowance: Allowance) -> CompiledModel:
     return CompiledModel(osc, allowance)
 
 
-def _law_of(osc: Oscillator) -> tuple[str, Array]:
-    """The text of a law rho, empty for a constant; its constants, and 0 for a constant, or the address of the law."""
-    text, trees = scalar(rho_of(osc.restitution), ("v",), LAW)
-    if not names_in(osc.restitution):
-        text, trees = "", (osc.restitution,)
-    return text, np.array([*(as_float(substitute(tree, osc.parameters)) for tree in trees), float(bool(text))])
-
-
 class CompiledModel:
     """A model's numbers, tables and scratch in flat arrays, and the compiled entries that work on them.
 
     States are doubles here, v > 0; results are codes of the kernels, see `kernels.entries`, and rows of numbers.
     """
 
-    def __init__(self, osc: Oscillator, allowance: Allowance, flow: Recurrence | None = None) -> None:
-        """`flow` : a recurrence of the model with another third column, see `codegen.taylor_recurrence`."""
+    def __init__(
+        self,
+        osc: Oscillator,
+        allowance: Allowance,
+        flow: Recurrence | None = None,
+        numbers: Numbers | None = None,
+        rows: int = TABLES.rows,
+    ) -> None:
+        """`flow` : a recurrence of the model with another third column, see `codegen.taylor_recurrence`. numbers : of
+        many models, of which this is the first. rows : of the tables of a linear model.
+        """
         self.osc, self.allowance = osc, allowance
         self.form = linear_form(osc)
-        self.linear = flow is None and has_table(osc)
-        self.walls = (osc,) if osc.upper is None else (osc, osc.mirrored)
+        numbers = numbers or Numbers(osc)
+        form = self.form and form_of(osc.force(numbers.letters), osc.forcing(numbers.letters))
+        self.linear = flow is None and form is not None and has_table(osc)
+        self.walls = numbers.sides
         self.constant_restitution = not any(names_in(item.restitution) for item in self.walls)
         self.flow = None if self.linear else flow or recurrence_of(osc)
         flows = [self.flow, *(None if self.linear else recurrence_of(item) for item in self.walls[1:])]
-        texts, laws = zip(*(_law_of(item) for item in self.walls), strict=True)
-        self.sizes, self.flat, self.rho = walls_laid_out(osc, allowance, flows, laws)
+        texts = [numbers.law(above)[0] for above in range(len(self.walls))]
+        # of all models; this one has the first rows
+        self.sizes, self.flats, self.rhos = laid_out(numbers, allowance, flows, rows)
+        self.flat, self.rho = self.flats[0], self.rhos[0]
         flats, rhos = np.split(self.flat, len(self.walls)), np.split(self.rho, len(self.walls))
         self.emitted = [Emitted(item.source if item else "", text) for item, text in zip(flows, texts, strict=True)]
         self.machine: Machine = machine_of(Emitted(steps=not self.linear))
@@ -95,7 +98,7 @@ class CompiledModel:
         self.laws = [
             Called(machine_of(Emitted(rho=text)), numbers) for text, numbers in zip(texts, rhos, strict=True) if text
         ]
-        self._sizes, self._flat_address = self.sizes.tolist(), _address(self.flat)
+        self._sizes, self._flat_address = self.sizes.tolist(), address_of(self.flat)
         self._room = layout.scratch_length(self.sizes)
         # r of the lower wall and of the upper one
         self.rates = tuple(float(numbers[0]) if self.constant_restitution else np.nan for numbers in rhos)
@@ -154,17 +157,19 @@ class CompiledModel:
         units = max(job[1], 1) * (max(job[2], 1) if job[0] == entries.ITERATE else 1)
         sizes = _SIZES(*self._sizes)
         sizes[layout.KIND], sizes[layout.COUNT], sizes[layout.IMPACTS] = job
-        addresses = [_address(array) for array in arrays] + [_NOWHERE] * (3 - len(arrays))
-        addresses += [_NOWHERE if array is None else _address(array) for array in (out, status)]
-        model = self._flat_address if flat is None else _address(flat)
+        addresses = [address_of(array) for array in arrays] + [_NOWHERE] * (3 - len(arrays))
+        addresses += [_NOWHERE if array is None else address_of(array) for array in (out, status)]
+        model = self._flat_address if flat is None else address_of(flat)
         if trace is not None:
-            return self._timed(entry, (sizes, model, _address(trace), *addresses), units, (trace, arrays, out, status))
+            return self._timed(
+                entry, (sizes, model, address_of(trace), *addresses), units, (trace, arrays, out, status)
+            )
         # scratch is lent to one call at a time, so that threads do not meet in it; an interrupted call keeps it
         try:
             scratch, at = self._spare.pop()
         except IndexError:
             scratch = self._new_scratch()
-            at = _address(scratch)
+            at = address_of(scratch)
         result = self._timed(entry, (sizes, model, at, *addresses), units, (scratch, arrays, out, status, flat))
         self._spare.append((scratch, at))
         return result
@@ -577,10 +582,10 @@ class CompiledModel:
 _SIZES = ctypes.c_int64 * 8
 
 
-def _address(array: Array) -> int:
+def address_of(array: Array) -> int:
     """Where the numbers of a contiguous array lie; `array.ctypes` takes four times as long."""
     return int(array.__array_interface__["data"][0])
 
 
 _NONE = np.zeros(16)
-_NOWHERE = _address(_NONE)
+_NOWHERE = address_of(_NONE)

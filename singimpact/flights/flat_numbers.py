@@ -1,28 +1,36 @@
 """The numbers of a model in the flat arrays that kernels read, and the rules of its flights."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
+from types import MappingProxyType
 
 import numpy as np
 
-from singimpact.algebra.expressions import Number, subtract
+from singimpact.algebra.expressions import (
+    Expression,
+    Name,
+    add,
+    multiply,
+    names_in,
+    negate,
+    number,
+    substitute,
+    subtract,
+)
 from singimpact.algebra.numbers import Array, as_float
+from singimpact.codegen.scalar import scalar
 from singimpact.codegen.taylor_recurrence import Recurrence
+from singimpact.flights.bind import LAW
 from singimpact.flights.horizons import Allowance
 from singimpact.flights.kernels import layout
 from singimpact.flights.kernels.hits import UNIT
 from singimpact.flights.limits import LIMITS, degree_for
-from singimpact.flights.model_numbers import (
-    batch_turn_of,
-    fastest,
-    numbers_of,
-    numbers_of_flow,
-    phases_of,
-    step_with_few_bits,
-    turn_of,
-)
+from singimpact.flights.twofold import Twofold, value_of
+from singimpact.inputs import InputError, refuse
+from singimpact.oscillator.linear import form_of
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION, UPPER, period_over
+from singimpact.oscillator.rebound import rho_of
 
 EPSILON = UNIT
 
@@ -31,9 +39,8 @@ def gap_of(osc: Oscillator) -> tuple[float, float]:
     """The distance of both walls as a double, and what the double leaves out; inf and 0 of a model with one wall."""
     if osc.upper is None:
         return np.inf, 0.0
-    gap = subtract(osc.upper, osc.clearance)
-    high = as_float(gap)
-    return high, as_float(subtract(gap, Number(Fraction(high))))
+    gap = value_of(subtract(osc.upper, osc.clearance), {})
+    return float(gap.high), float(gap.low)
 
 
 @dataclass(frozen=True)
@@ -68,74 +75,182 @@ class TableSettings:
 TABLES = TableSettings()
 
 
-def walls_laid_out(
-    osc: Oscillator, allowance: Allowance, flows: Sequence[Recurrence | None], laws: Sequence[Array]
+class Numbers:
+    """The numbers of a model, or of many that differ in some of them, in two doubles each.
+
+    Parameters
+    ----------
+    osc : the model. over : names of the numbers that move, each with a double for every member, shape (n,); then they
+        are letters in the trees.
+    """
+
+    def __init__(self, osc: Oscillator, over: Mapping[str, Array] = MappingProxyType({})) -> None:
+        self.osc, self.over, self.letters = osc, over, frozenset(over)
+        self.size = next(iter(over.values())).size if over else 1
+        self._values = {name: Twofold.of(values) for name, values in over.items()}
+        self._kept = {name: value for name, value in osc.parameters.items() if name not in over}
+        self.sides = (osc,) if osc.upper is None else (osc, osc.mirrored)
+        tree = period_over(osc, self.letters)
+        self.period = None if tree is None else self.value(tree)
+        if self.period is not None and np.any(self.period.high < 0):
+            self.period = self.period * Twofold.of(np.sign(self.period.high))
+
+    def member(self, index: int) -> Oscillator:
+        """One of the models; its numbers are the doubles that were given."""
+        changes = {name: float(values[index]) for name, values in self.over.items()}
+        return self.osc.replace(**changes) if changes else self.osc
+
+    def value(self, tree: Expression) -> Twofold:
+        """A tree of constants and letters."""
+        return value_of(substitute(tree, self._kept), self._values)
+
+    def column(self, tree: Expression) -> Array:
+        """The nearest doubles to a tree, one for each member."""
+        return np.broadcast_to(self.value(tree).high, self.size)
+
+    def place(self, above: int) -> Expression:
+        """The clearance, or minus the upper wall: the clearance of the model with x -> -x."""
+        name = UPPER[0] if above else CLEARANCE
+        tree = Name(name) if name in self.letters else getattr(self.osc, name)
+        return negate(tree) if above else tree
+
+    def law(self, above: int) -> tuple[str, tuple[Expression, ...]]:
+        """The text of a law rho, empty for a constant, and its constants."""
+        side, name = self.sides[above], UPPER[1] if above and UPPER[1] in self.osc.to_dict() else RESTITUTION
+        if names_in(side.restitution):
+            return scalar(rho_of(side.restitution), ("v",), LAW)
+        return "", (Name(name) if name in self.letters else side.restitution,)
+
+    def slope(self, above: int) -> Array:
+        """r = -rho'(0) of each member."""
+        text, trees = self.law(above)
+        if not text:
+            return self.column(trees[0])
+        models = [self.osc] if self.letters.isdisjoint(self.osc.parameters) else map(self.member, range(self.size))
+        sides = (each.mirrored if above else each for each in models)
+        return np.broadcast_to([as_float(each.slope_at_rest()) for each in sides], self.size)
+
+
+def laid_out(
+    numbers: Numbers, allowance: Allowance, flows: Sequence[Recurrence | None], rows: int = TABLES.rows
 ) -> tuple[Array, Array, Array]:
-    """Sizes and numbers of a model as the kernels read them, see `kernels.layout`, and the constants of its laws.
+    """Sizes, numbers of each model as the kernels read them, see `kernels.layout`, and constants of its laws.
 
     Behind a model with two walls lies the one with x -> -x, and so behind its law.
 
     Parameters
     ----------
-    flows : the recurrence of f and g, None of a linear model; and that of the model with x -> -x. laws : constants of
-        the restitution, and those of the upper wall.
+    flows : the recurrence of f and g, None of a linear model; and that of the model with x -> -x. rows : of the tables
+        of a linear model.
+
+    Raises
+    ------
+    InputError : a number does not fit a double.
     """
+    laws = []
+    for above in range(len(numbers.sides)):
+        text, trees = numbers.law(above)
+        laws.append(np.stack([*map(numbers.column, trees), np.full(numbers.size, float(bool(text)))], axis=1))
     laws = _of_one_length(laws)
-    sizes, flat = laid_out(osc, allowance, flows[0], laws[0])
-    if osc.upper is None:
-        return sizes, flat, laws[0]
-    others, behind = laid_out(osc.mirrored, allowance, flows[1], laws[1])
-    sizes, rho = np.maximum(sizes, others), np.concatenate(laws)
-    return sizes, np.concatenate([flat, behind] if flows[0] is None else _of_one_length([flat, behind])), rho
+    parts = [_one_wall(numbers, above, allowance, flow, (laws[0].shape[1], rows)) for above, flow in enumerate(flows)]
+    flats = [flat for _, flat in parts]
+    flats = flats if flows[0] is None else _of_one_length(flats)
+    return np.maximum.reduce([sizes for sizes, _ in parts]), np.hstack(flats), np.hstack(laws)
 
 
 def _of_one_length(arrays: Sequence[Array]) -> list[Array]:
-    """Arrays whose last number stays the last: an address is read from there."""
-    length = max(array.size for array in arrays)
-    return [np.concatenate([array[:-1], np.zeros(length - array.size), array[-1:]]) for array in arrays]
+    """Rows whose last number stays the last: an address is read from there."""
+    length = max(array.shape[1] for array in arrays)
+    return [
+        np.hstack([array[:, :-1], np.zeros((len(array), length - array.shape[1])), array[:, -1:]]) for array in arrays
+    ]
 
 
-def laid_out(osc: Oscillator, allowance: Allowance, flow: Recurrence | None, rho: Array) -> tuple[Array, Array]:
-    """Sizes and numbers of a model as the kernels read them, see `kernels.layout`.
-
-    Parameters
-    ----------
-    flow : the recurrence of f and g; None of a linear model. rho : constants of the restitution.
-    """
-    numbers, rest = numbers_of(osc) if flow is None else (numbers_of_flow(osc, flow), np.zeros(0))
-    pace = numbers[4] if flow is None else 1.0 if osc.period is None else 2 * np.pi / as_float(osc.period)
+def _one_wall(
+    numbers: Numbers, above: int, allowance: Allowance, flow: Recurrence | None, lengths: tuple[int, int]
+) -> tuple[Array, Array]:
+    """Sizes and numbers of models at one wall; lengths : of the constants of rho, and rows of the tables."""
+    osc, n = numbers.osc, numbers.size
     order = degree_for(EPSILON if flow is None else allowance.epsilon)
+    room = max(order, degree_for(LIMITS.judging)) + 2 + LIMITS.derivatives_at_rest
+    sizes = np.zeros(8, dtype=np.int64)
+    sizes[layout.RHO] = lengths[0]
+    if flow is None:
+        flat, pace = _linear_numbers(numbers, above, sizes, (room, lengths[1]))
+    else:
+        trees = numbers.place(above), *flow.constants
+        # last, the address of the compiled recurrence
+        sizes[[layout.ROWS, layout.ROOM, layout.CONSTANTS]] = flow.rows, room, len(trees) + 1
+        flat = np.ones((n, layout.SCALARS + len(trees) + 1))
+        flat[:, layout.SCALARS : -1] = np.stack([numbers.column(tree) for tree in trees], axis=1)
+        pace = np.ones(1) if numbers.period is None else 2 * np.pi / numbers.period.high
     short = TABLES.order if flow is None else degree_for(LIMITS.judging)
     coarse = 10 * allowance.epsilon if allowance.epsilon > EPSILON else 0.0
+    gap = Twofold(np.inf, 0.0)
+    if osc.upper is not None:
+        gap = numbers.value(negate(add(numbers.place(0), numbers.place(1))))
     rules = (allowance.horizon, LIMITS.longest if flow is None else allowance.steps, order, short,
              LIMITS.safety * (EPSILON if flow is None else allowance.epsilon), LIMITS.likely,
              max(LIMITS.rough[0], coarse), max(LIMITS.rough[1], coarse), pace,
-             1 - as_float(osc.slope_at_rest()), allowance.reach, *gap_of(osc))  # fmt: skip
-    room = max(order, degree_for(LIMITS.judging)) + 2 + LIMITS.derivatives_at_rest
-    sizes = np.zeros(8, dtype=np.int64)
-    sizes[layout.RHO] = rho.size
-    if flow is None:
-        waves = len(numbers[5:]) // 3
-        sizes[[layout.WAVES, layout.ROWS, layout.ROOM]] = waves, TABLES.rows, max(room, 2 * waves + 2)
-        flat = np.zeros(layout.linear_length(sizes))
-        scalars = layout.SCALARS
-        flat[scalars : scalars + 4], flat[scalars + 4 : scalars + 8] = numbers[1:5], rest[1:5]
-        rate = fastest(osc) or TABLES.slowest
-        flat[scalars + 8], flat[scalars + 9] = (
-            step_with_few_bits(TABLES.reach, rate, TABLES.bits),
-            step_with_few_bits(TABLES.batch_reach, rate, TABLES.bits),
-        )
-        model = layout.linear_model(flat, sizes)
-        phases = phases_of(osc)
-        for numbers_of_waves, values, phase in ((model.numbers, numbers, phases[0]), (model.rest, rest, phases[1])):
-            rates, cosines, sines = values[5:].reshape(-1, 3).T
-            numbers_of_waves.waves[:] = np.stack([rates, phase, cosines, sines], axis=1)
-        flat[-3:] = batch_turn_of(osc)
-    else:
-        constants = numbers.size + 1  # last, the address of the compiled recurrence
-        sizes[[layout.ROWS, layout.ROOM, layout.CONSTANTS]] = flow.rows, room, constants
-        flat = np.ones(layout.SCALARS + constants)
-        flat[layout.SCALARS : -1] = numbers
-    flat[: len(rules)] = rules
-    flat[layout.TURN : layout.TURN + 5] = turn_of(osc)
+             1 - numbers.slope(above), allowance.reach, gap.high, gap.low)  # fmt: skip
+    for slot, rule in enumerate(rules):
+        flat[:, slot] = rule
+    flat[:, layout.TURN : layout.TURN + 5] = 0.0 if numbers.period is None else parts_of_turn(numbers.period)
+    finite = np.delete(flat[:, : layout.SCALARS + 4], layout.GAP, axis=1)
+    if not (np.isfinite(finite).all() and np.isfinite(flat[:, layout.SCALARS :]).all()):
+        if not numbers.over:
+            raise InputError("a constant of the model is too large for a double: scale the model, or ask with digits=")
+        shown = {name: np.unique(values)[:4].tolist() for name, values in numbers.over.items()}
+        raise refuse("numbers", shown, "numbers at which the model has a period and finite constants")
     return sizes, flat
+
+
+def _linear_numbers(numbers: Numbers, above: int, sizes: Array, lengths: tuple[int, int]) -> tuple[Array, Array]:
+    """The numbers of linear models, and their largest rates; lengths : of Taylor coefficients, and rows of tables."""
+    form = form_of(numbers.osc.force(numbers.letters), numbers.osc.forcing(numbers.letters))
+    assert form is not None
+    count, at, sign = len(form.harmonics), layout.SCALARS, number(-1 if above else 1)
+    sizes[[layout.WAVES, layout.ROWS, layout.ROOM]] = count, lengths[1], max(lengths[0], 2 * count + 2)
+    flat = np.zeros((numbers.size, layout.linear_length(sizes)))
+    steady = add(multiply(sign, form.constant), negate(multiply(form.stiffness, numbers.place(above))))
+    trees = {at: form.damping, at + 1: form.stiffness, at + 2: steady}
+    d, k = numbers.column(form.damping), numbers.column(form.stiffness)
+    rates = [np.abs(numbers.column(wave.rate)) for wave in form.harmonics]
+    # the largest rate is only a scale, so a double of it is enough
+    scale = np.maximum.reduce([np.abs(d), np.abs(k) ** 0.5, *rates])
+    flat[:, at + 3] = scale
+    root = np.sqrt(d * d / 4 - k + 0j)
+    fastest = np.maximum.reduce([np.abs(-d / 2 + root), np.abs(-d / 2 - root), *rates])
+    for slot, reach in ((8, TABLES.reach), (9, TABLES.batch_reach)):
+        flat[:, at + slot] = steps_with_few_bits(reach / np.where(fastest == 0, TABLES.slowest, fastest), TABLES.bits)
+    for j, wave in enumerate(form.harmonics):
+        parts = wave.rate, wave.phase, multiply(sign, wave.cosine), multiply(sign, wave.sine)
+        trees |= dict(enumerate(parts, at + 10 + 4 * j))
+    for slot, tree in trees.items():
+        value = numbers.value(tree)
+        flat[:, slot], flat[:, slot + 4 * (count if slot >= at + 10 else 1)] = value.high, value.low
+    if numbers.period is not None:
+        flat[:, -3:] = _turn_of_batches(numbers.period)
+    return flat, scale
+
+
+def steps_with_few_bits(steps: Array, bits: int) -> Array:
+    """Steps cut to few bits, so that multiples of them are exact."""
+    fraction, exponent = np.frexp(steps)
+    return np.asarray(np.ldexp(np.floor(np.ldexp(fraction, bits)), exponent - bits))
+
+
+def parts_of_turn(period: Twofold) -> Array:
+    """A period and its parts of 26 bits, whose products with fewer than 2^26 periods are exact."""
+    left, parts = period, [period.high]
+    for _ in range(4):
+        _, exponent = np.frexp(left.high)
+        parts.append(np.ldexp(np.rint(np.ldexp(left.high, 26 - exponent)), exponent - 26))
+        left = left + Twofold.of(-parts[-1])
+    return np.asarray(np.stack(np.broadcast_arrays(*parts), axis=-1))
+
+
+def _turn_of_batches(period: Twofold) -> Array:
+    """A period in two parts, the first of 33 bits, and its inverse."""
+    high = steps_with_few_bits(period.high, 33)
+    return np.stack([high, (period.high - high) + period.low, 1 / period.high], axis=-1)

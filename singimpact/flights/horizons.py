@@ -1,7 +1,9 @@
 """The flight time after which a flight is given up: given by the caller, or long beside the motion of the model."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -11,11 +13,11 @@ from singimpact.algebra.numbers import Array, as_float, constant, sign_of
 from singimpact.algebra.rings import DOUBLES
 from singimpact.flights.kernels.hits import UNIT as EPSILON
 from singimpact.flights.limits import LIMITS
-from singimpact.flights.model_numbers import fastest_rate, has_table, recurrence_of
+from singimpact.flights.model_numbers import fastest_rate, fastest_rates, has_table, recurrence_of, valued
 from singimpact.inputs import refuse
-from singimpact.oscillator.linear import LinearForm, at_rest, linear_form
+from singimpact.oscillator.linear import LinearForm, form_of
 from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.wall_acceleration import at_wall
+from singimpact.oscillator.moving_number import CLEARANCE, period_over
 
 
 @dataclass(frozen=True)
@@ -48,13 +50,14 @@ class Allowance:
     Parameters
     ----------
     horizon, reach : a flight with launch velocity v is given up after the time max(horizon, reach v).
+        Of many models they are arrays.
     epsilon : relative error of a Taylor step. steps : Taylor steps.
     """
 
-    horizon: float
+    horizon: Any
     epsilon: float = EPSILON
     steps: int = LIMITS.steps
-    reach: float = 0.0
+    reach: Any = 0.0
 
     def until(self, v: Any) -> Any:
         """The flight time at which flights with launch velocities v are given up."""
@@ -106,68 +109,99 @@ def reach_of(osc: Oscillator) -> float:
 
 @lru_cache(maxsize=256)
 def _usual(osc: Oscillator) -> tuple[float, float]:
-    form, fast = linear_form(osc), fastest_rate(osc)
-    if osc.period is None:
-        least, longest = LIMITS.horizon_time, np.inf
+    horizon, reach = usual(osc)
+    return float(horizon), float(reach)
+
+
+def usual(osc: Oscillator, over: Mapping[str, Array] = MappingProxyType({})) -> tuple[Array, Array]:
+    """The default horizon of flights, and the time for which a launch is followed a unit of its velocity.
+
+    Parameters
+    ----------
+    over : numbers of the model as arrays of shape (n, 1), which the results then have; without it they are numbers.
+    """
+    names = frozenset(over)
+    form = form_of(osc.force(names), osc.forcing(names))
+    tree, fast = period_over(osc, names), fastest_rates(osc, over)
+    clearance = over.get(CLEARANCE, as_float(osc.clearance))
+    if tree is None:
+        period, least, longest = None, LIMITS.horizon_time, np.inf
     else:
-        period = as_float(osc.period)
-        least = min(LIMITS.horizon_periods * period, LIMITS.horizon_radians / fast)
+        period = np.abs(valued(tree, over))
+        least = np.minimum(LIMITS.horizon_periods * period, LIMITS.horizon_radians / fast)
         longest = LIMITS.longest_radians / fast
-    times, reach = _of_nonlinear(osc) if form is None else _of_linear(osc, form)
-    return max(least, min(max([least, *times]), longest)), reach
+    if form is None:
+        time, reach = _of_nonlinear(osc, over, period, clearance)
+    else:
+        time, reach = _of_linear(form, over, period, clearance)
+    return np.maximum(least, np.minimum(np.maximum(least, time), longest)), reach
 
 
-def _of_linear(osc: Oscillator, form: LinearForm) -> tuple[list[float], float]:
-    """Times that a horizon holds, and the reach."""
-    k, d, mean = as_float(form.stiffness), abs(as_float(form.damping)), as_float(at_rest(form, osc.clearance))
-    times = [] if osc.period is None else [SETTINGS.slow_periods * as_float(osc.period)]
-    if k:
-        times.append(SETTINGS.half_turns * (np.pi / abs(k) ** 0.5 + d / abs(k)))
-        return times, 0.0
-    sizes = [(np.hypot(as_float(wave.cosine), as_float(wave.sine)), as_float(wave.rate)) for wave in form.harmonics]
-    return _turned_back(times, mean, sum(size for size, _ in sizes), sum(size / abs(rate) for size, rate in sizes))
-
-
-def _of_nonlinear(osc: Oscillator) -> tuple[list[float], float]:
-    """Horizons from the force at rest and the mean of the forcing, in doubles: estimates are enough."""
-    period = 2 * np.pi if osc.period is None else as_float(osc.period)
-    phases = period * np.arange(SETTINGS.samples) / SETTINGS.samples
-    clearance = as_float(osc.clearance)
-    amplitudes = np.array(SETTINGS.amplitudes) * max(1.0, abs(clearance))
+def _of_linear(form: LinearForm, over: Mapping[str, Array], period: Any, clearance: Any) -> tuple[Array, Array]:
+    """The longest of the times that a horizon holds, and the reach."""
+    k, d, steady = (valued(tree, over) for tree in (form.stiffness, form.damping, form.constant))
+    waves = [[valued(tree, over) for tree in (wave.cosine, wave.sine, wave.rate)] for wave in form.harmonics]
+    least = 0.0 if period is None else SETTINGS.slow_periods * period
     with np.errstate(all="ignore"):
-        moving = at_wall(osc).moving if osc.parametric else osc.forcing()
-        forcing = evaluate(moving, {"t": phases}, DOUBLES) + 0 * phases
-        above = clearance + np.concatenate([[0.0], amplitudes])
-        force = _mean_force(osc, above, phases)
-        average = 0.0 if osc.period is None else float(forcing.mean())
-        pull = force[1:] - average
+        force, speed = 0.0 * k, 0.0 * k
+        for cosine, sine, rate in waves:
+            force, speed = force + np.hypot(cosine, sine), speed + np.hypot(cosine, sine) / np.abs(rate)
+        back, reach = _turned_back(steady - k * clearance, force, speed)
+        half_turns = SETTINGS.half_turns * (np.pi / np.abs(k) ** 0.5 + np.abs(d) / np.abs(k))
+        return np.maximum(least, np.where(k == 0, back, half_turns)), np.where(k == 0, reach, 0.0)
+
+
+def _of_nonlinear(osc: Oscillator, over: Mapping[str, Array], period: Any, clearance: Any) -> tuple[Array, Array]:
+    """Horizons from the force at rest and the mean of the forcing, in doubles: estimates are enough."""
+    phases = (2 * np.pi if period is None else period) * np.arange(SETTINGS.samples) / SETTINGS.samples
+    amplitudes = np.array(SETTINGS.amplitudes) * np.maximum(1.0, np.abs(clearance))
+    above = clearance + np.concatenate([0.0 * amplitudes[..., :1], amplitudes], axis=-1)
+    forcing = osc.forcing(frozenset(over))
+    with np.errstate(all="ignore"):
+        if osc.parametric:
+            at_rest = {"x": clearance, "xdot": 0.0, "t": phases}
+            moving = evaluate(forcing, {**over, "t": phases}, DOUBLES) - evaluate(
+                osc.force(frozenset(over)), {**over, **at_rest}, DOUBLES
+            )
+        else:
+            moving = evaluate(forcing, {**over, "t": phases}, DOUBLES)
+        moving = moving + 0 * phases
+        force = _mean_force(osc, over, above, phases)
+        average = 0.0 if period is None else moving.mean(axis=-1, keepdims=True)
+        pull = force[..., 1:] - average
         # a difference of rounding errors is no weak spring: it would make a horizon of 1e8
-        back = pull > SETTINGS.least_mean * (np.abs(force).max() + abs(average))
-        half_turns = np.pi / np.sqrt(pull[back] / amplitudes[back])
-    times = (SETTINGS.nonlinear_half_turns * half_turns[np.isfinite(half_turns)]).tolist()
-    if osc.period is None or not np.isfinite(forcing).all() or not np.isfinite(force[0]):
-        return times, 0.0
-    swing = float(np.abs(forcing - average).max())
-    return _turned_back(times, average - float(force[0]), swing, swing * period / (2 * np.pi))
+        back = pull > SETTINGS.least_mean * (np.abs(force).max(axis=-1, keepdims=True) + np.abs(average))
+        half_turns = np.where(back, np.pi / np.sqrt(pull / amplitudes), 0.0)
+        times = SETTINGS.nonlinear_half_turns * np.where(np.isfinite(half_turns), half_turns, 0.0)
+        time, start = times.max(axis=-1, keepdims=True), force[..., :1]
+        if over == {}:
+            time, start, average = time[0], start[0], np.ravel(average)[0]
+        if period is None:
+            return time, 0.0 * time
+        swing = np.abs(moving - average).max(axis=-1, keepdims=over != {})
+        longer, reach = _turned_back(average - start, swing, swing * period / (2 * np.pi))
+        certain = np.isfinite(swing) & np.isfinite(start)
+        return np.maximum(time, np.where(certain, longer, 0.0)), np.where(certain, reach, 0.0)
 
 
-def _mean_force(osc: Oscillator, above: Array, phases: Array) -> Array:
+def _mean_force(osc: Oscillator, over: Mapping[str, Array], above: Array, phases: Array) -> Array:
     """f(x, 0) at some places; its mean over a period, less that at the wall, where t occurs in f."""
+    force = osc.force(frozenset(over))
     if not osc.parametric:
-        return np.asarray(evaluate(osc.force(), {"x": above, "xdot": 0 * above}, DOUBLES) + 0 * above)
-    state = {"x": above[:, None], "xdot": 0.0, "t": phases}
-    means = (evaluate(osc.force(), state, DOUBLES) + np.zeros((above.size, phases.size))).mean(axis=1)
-    return np.asarray(means - means[0])
+        return np.asarray(evaluate(force, {**over, "x": above, "xdot": 0 * above}, DOUBLES) + 0 * above)
+    letters = {name: value[..., None] for name, value in over.items()}
+    state = {**letters, "x": above[..., None], "xdot": 0.0, "t": phases[..., None, :]}
+    means = (evaluate(force, state, DOUBLES) + 0.0 * (above[..., None] + phases[..., None, :])).mean(axis=-1)
+    return np.asarray(means - means[..., :1])
 
 
-def _turned_back(times: list[float], mean: float, force: float, speed: float) -> tuple[list[float], float]:
-    """Horizons with the return times of a mean force that presses the mass to the wall.
+def _turned_back(mean: Any, force: Any, speed: Any) -> tuple[Array, Array]:
+    """The time and the reach of flights that a mean force turns back to the wall; zeros where it does not.
 
     Parameters
     ----------
     force, speed : sizes of what oscillates about the mean, and of the velocity that it gives to the mass.
     """
-    if not mean < -SETTINGS.least_mean * force:
-        return times, 0.0
-    reach = 2 * SETTINGS.returns / -mean
-    return [*times, reach * speed], reach
+    with np.errstate(all="ignore"):
+        reach = np.where(mean < -SETTINGS.least_mean * force, 2 * SETTINGS.returns / -mean, 0.0)
+    return reach * speed, reach

@@ -31,8 +31,8 @@ from singimpact.oscillator.wall_acceleration import acceleration_at
 from singimpact.status import Cause, Status, status_array
 
 NONE = np.int8(0)
+# Launch times from which on the rounding of phases that no period takes in is looked at
 LATE = 2.0**22
-"""Launch times from which on the rounding of phases that no period takes in is looked at."""
 NO_NOTES: dict[int, str] = {}
 
 

@@ -13,8 +13,8 @@ from singimpact.flights.bind import Emitted, over_floats
 from singimpact.flights.kernels import layout
 from singimpact.flights.kernels.state import ACROSS, FLIGHT_TIME, VELOCITY, Work
 
+# What Python raises where doubles have an answer: 1/0, exp(1000), log(-1), a comparison of (-1)**0.5
 LEFT_OPEN = (ZeroDivisionError, OverflowError, ValueError, TypeError)
-"""What Python raises where doubles have an answer: 1/0, exp(1000), log(-1), a comparison of (-1)**0.5."""
 
 
 def listed(part: Any) -> Any:

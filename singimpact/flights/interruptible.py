@@ -10,11 +10,11 @@ from typing import Any
 
 from singimpact.inputs import refuse
 
+# Seconds; a thread costs 0.0001
 LONG = 0.05
-"""Seconds; a thread costs 0.0001."""
 NAME = "long flights"
+# Seconds between two looks of the main thread, where the system does not wake it up
 LOOK = 0.1
-"""Seconds between two looks of the main thread, where the system does not wake it up."""
 
 
 def interruptible(call: Callable[..., int], arguments: tuple[Any, ...], buffers: tuple[Any, ...]) -> int:
@@ -43,8 +43,8 @@ def interruptible(call: Callable[..., int], arguments: tuple[Any, ...], buffers:
     return values[0]
 
 
+# Threads that share out an array unless a call says otherwise; never more than there are processors
 USUAL = 2
-"""Threads that share out an array unless a call says otherwise; never more than there are processors."""
 _ASKED: ContextVar[int | None] = ContextVar("threads", default=None)
 
 

@@ -48,8 +48,8 @@ class CompilingSettings:
 SETTINGS = CompilingSettings()
 FOLDER = "kernels"
 Entry = tuple[Callable[..., int], Callable[..., int]]
+# States of one call of a `Bound` entry at most
 FEW = 32
-"""States of one call of a `Bound` entry at most."""
 
 
 @lru_cache(maxsize=256)

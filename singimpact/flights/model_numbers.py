@@ -1,20 +1,30 @@
 """The numbers of a model as doubles, and what the doubles leave out."""
 
-from collections.abc import Iterable
+from collections.abc import Mapping
 from fractions import Fraction
-from functools import lru_cache
-from math import frexp, ldexp
+from functools import lru_cache, reduce
 from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.expressions import Expression, Number, Pi, multiply, number, power, substitute
-from singimpact.algebra.numbers import Array, as_float, rational_near, sign_of
+from singimpact.algebra.expressions import (
+    Expression,
+    Number,
+    Pi,
+    evaluate,
+    multiply,
+    names_in,
+    number,
+    power,
+    substitute,
+)
+from singimpact.algebra.numbers import Array, as_float, sign_of
+from singimpact.algebra.rings import DOUBLES
 from singimpact.codegen.taylor_recurrence import Recurrence, recurrence
 from singimpact.flights.kernels.state import Linear
-from singimpact.inputs import InputError
-from singimpact.oscillator.linear import LinearForm, at_rest, linear_form
+from singimpact.oscillator.linear import at_rest, form_of, linear_form
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.moving_number import period_over
 
 
 @lru_cache(maxsize=256)
@@ -55,44 +65,9 @@ def fastest(osc: Oscillator) -> float:
     return float(max([abs(-d / 2 + root), abs(-d / 2 - root), *rates, 0.0]))
 
 
-def numbers_of(osc: Oscillator) -> tuple[Array, Array]:
-    """`constants_of` as doubles, and the parts below the doubles; those of a recurrence where the model has no rate.
-
-    Raises
-    ------
-    InputError : a number does not fit a double.
-    """
-    return _numbers_of(osc, has_table(osc))
-
-
-@lru_cache(maxsize=256)
-def _numbers_of(osc: Oscillator, linear: bool) -> tuple[Array, Array]:
-    trees = constants_of(osc, linear)
-    numbers = _in_range(trees)
-    return numbers, np.array([_below(tree) for tree in trees]) if linear else np.zeros(numbers.size)
-
-
 def numbers_of_flow(osc: Oscillator, flow: Recurrence) -> Array:
     """The clearance and the constants of a recurrence with the model's parameters put in."""
-    return _in_range([osc.clearance, *(substitute(tree, osc.parameters) for tree in flow.constants)])
-
-
-def _in_range(trees: Iterable[Expression]) -> Array:
-    numbers = np.array([as_float(tree) for tree in trees])
-    if not np.all(np.isfinite(numbers)):
-        raise InputError("a constant of the model is too large for a double: scale the model, or ask with digits=")
-    return numbers
-
-
-def phases_of(osc: Oscillator) -> tuple[Array, Array]:
-    """The phases of the waves of a linear model as doubles, and the parts below them."""
-    phases = [wave.phase for wave in linear_waves(osc)]
-    return np.array([as_float(tree) for tree in phases]), np.array([_below(tree) for tree in phases])
-
-
-def _below(tree: Expression) -> float:
-    high = as_float(tree)
-    return float(rational_near(tree, 256) - Fraction(high)) if np.isfinite(high) else 0.0
+    return np.array([as_float(substitute(tree, osc.parameters)) for tree in (osc.clearance, *flow.constants)])
 
 
 def linear_waves(osc: Oscillator) -> tuple[Any, ...]:
@@ -110,29 +85,6 @@ def linear_numbers(osc: Oscillator, value: Any) -> Linear:
 
 
 @lru_cache(maxsize=256)
-def turn_of(osc: Oscillator) -> tuple[float, ...]:
-    """The period and its parts of 26 bits, whose products with fewer than 2^26 periods are exact; zeros without one."""
-    if osc.period is None:
-        return (0.0,) * 5
-    left, parts = rational_near(osc.period, 600), [as_float(osc.period)]
-    for _ in range(4):
-        unit = Fraction(2) ** (frexp(float(left))[1] - 26) if left else Fraction(1)
-        parts.append(float(round(left / unit) * unit))
-        left -= round(left / unit) * unit
-    return tuple(parts)
-
-
-def batch_turn_of(osc: Oscillator) -> tuple[float, float, float]:
-    """The period in two parts, the first of 33 bits, and its inverse; zeros without a period."""
-    if osc.period is None:
-        return 0.0, 0.0, 0.0
-    exact = rational_near(osc.period, 256)
-    fraction, exponent = frexp(float(exact))
-    high = ldexp(int(ldexp(fraction, 33)), exponent - 33)
-    return high, float(exact - Fraction(high)), 1 / float(exact)
-
-
-@lru_cache(maxsize=256)
 def fastest_rate(osc: Oscillator) -> float:
     """A rate that flights show: of the waves and of the free motion; without a closed form, of the period.
 
@@ -141,20 +93,29 @@ def fastest_rate(osc: Oscillator) -> float:
     >>> fastest_rate(Oscillator("9*x", "cos(2*t)", 0, 1))
     3.0
     """
-    form: LinearForm | None = linear_form(osc)
+    return float(fastest_rates(osc, {}))
+
+
+def fastest_rates(osc: Oscillator, over: Mapping[str, Any]) -> Any:
+    """`fastest_rate` of models some of whose numbers are arrays."""
+    form = form_of(osc.force(over), osc.forcing(over))
     if form is not None:
-        waves = [abs(as_float(wave.rate)) for wave in form.harmonics]
-        return float(max([abs(as_float(form.stiffness)) ** 0.5, abs(as_float(form.damping)), 0.5, *waves]))
-    return max(2.0, 0.0 if osc.period is None else 4 * np.pi / as_float(osc.period))
+        rates = [np.abs(valued(wave.rate, over)) for wave in form.harmonics]
+        damping, stiffness = np.abs(valued(form.damping, over)), np.abs(valued(form.stiffness, over))
+        return reduce(np.maximum, [stiffness**0.5, damping, 0.5, *rates])
+    period = period_over(osc, over)
+    return np.maximum(2.0, 0.0 if period is None else 4 * np.pi / np.abs(valued(period, over)))
+
+
+def valued(tree: Expression, over: Mapping[str, Any]) -> Any:
+    """A tree of constants and letters in doubles; without letters the double nearest to it."""
+    if not over or names_in(tree).isdisjoint(over):
+        return np.float64(as_float(tree))
+    with np.errstate(all="ignore"):  # what is no number is refused by who reads it
+        return evaluate(tree, over, DOUBLES)
 
 
 @lru_cache(maxsize=256)
 def turn(rate: Expression) -> Expression:
     """The time 2 pi/|rate| of a turn."""
     return multiply(number(2 * sign_of(rate)), Pi(), power(rate, number(-1)))
-
-
-def step_with_few_bits(reach: float, rate: float, bits: int) -> float:
-    """reach/rate with few bits, so that multiples of it are exact."""
-    fraction, exponent = frexp(reach / rate)
-    return ldexp(int(ldexp(fraction, bits)), exponent - bits)

@@ -74,8 +74,8 @@ class Launched(Result):
 
 
 NAMES = ("t", "xdot", "x")
+# Starts of a call up to which reading them costs as much as their flights
 FEW_STARTS = 1000
-"""Starts of a call up to which reading them costs as much as their flights."""
 
 
 def launch(osc: Oscillator, x: Any, xdot: Any, t: Any, *, horizon: Any = None) -> Launched:

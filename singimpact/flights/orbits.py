@@ -22,8 +22,8 @@ from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.result import Result, default_axes, in_words
 from singimpact.status import Status, Wall, status_array
 
+# Impacts below this velocity may be those of a chatter that is over, for a_c up to 1e10 times tau
 SLOW = 1e-6
-"""Impacts below this velocity may be those of a chatter that is over, for a_c up to 1e10 times tau."""
 
 
 @dataclass(frozen=True, eq=False)

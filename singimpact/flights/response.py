@@ -52,7 +52,7 @@ def response(osc: Oscillator, tau: Array, v: Array, time: Array, velocity: Array
     with np.errstate(all="ignore"):
         hits = velocity < 0 if osc.upper is None else velocity != 0
         parts[~(hits & np.isfinite(time))] = np.nan
-    return _response(parts.T, velocity, _acceleration(osc, tau, time, velocity))
+    return with_bend(parts.T, velocity, _acceleration(osc, tau, time, velocity))
 
 
 def response_of_one(osc: Oscillator, tau: float, v: float, time: float, velocity: float) -> Response:
@@ -61,13 +61,13 @@ def response_of_one(osc: Oscillator, tau: float, v: float, time: float, velocity
     parts = compiled_model(osc).one(VARIATIONS, tau, v, time)[1][:4]
     if velocity > 0:  # at an upper wall
         there = float(_acceleration(osc, *(np.array([number]) for number in (tau, time, velocity)))[0])
-        return _response(parts, velocity, there)
+        return with_bend(parts, velocity, there)
     at = (tau if osc.period is None else float(reduced(np.array([tau]), osc.period)[0])) + time
     ahead = forcing(at)
     there = ahead - force(velocity, at)
     if not abs(there) >= LIMITS.cancelled * abs(ahead):
         there = float(_acceleration(osc, *(np.array([number]) for number in (tau, time, velocity)))[0])
-    return _response(parts, velocity, there)
+    return with_bend(parts, velocity, there)
 
 
 def usual_errors(osc: Oscillator, tau: Array, v: Array, time: Array, velocity: Array) -> tuple[Array, Array]:
@@ -95,7 +95,8 @@ def variations(osc: Oscillator, tau: Array, v: Array, time: Array) -> Array:
     return out
 
 
-def _response(parts: Any, velocity: Any, acceleration_there: Any) -> Response:
+def with_bend(parts: Any, velocity: Any, acceleration_there: Any) -> Response:
+    """The response from derivatives of x and x' at the flight time, by v and by tau, and x'' there."""
     by_v, by_v_dot, by_tau, by_tau_dot = parts
     with np.errstate(all="ignore"):
         time_by_tau, time_by_v = -by_tau / velocity, -by_v / velocity
@@ -148,4 +149,4 @@ def precise(osc: Oscillator, tau: Any, v: Any, time: Any, velocity: Any, mp: Any
     *parts, _ = space["derivatives_at"]([tau], v, time, p, rules, work, columns)
     ring = Multiprecision(mp)
     values = {"x": as_mpf(osc.clearance, mp), "xdot": velocity, "t": tau + time}
-    return _response(parts, velocity, evaluate(osc.forcing(), values, ring) - evaluate(osc.force(), values, ring))
+    return with_bend(parts, velocity, evaluate(osc.forcing(), values, ring) - evaluate(osc.force(), values, ring))

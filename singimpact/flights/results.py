@@ -14,8 +14,8 @@ from singimpact.oscillator.model import Oscillator
 from singimpact.result import Result, in_words, plain, value_in_words
 from singimpact.status import Cause, Status, Wall, status_array
 
+# Fields that may be computed when they are first read: of a Taylor flow they take longer than the flight
 JUDGED = ("condition", "velocity_condition", "time_error", "velocity_error")
-"""Fields that may be computed when they are first read: of a Taylor flow they take longer than the flight."""
 SCALAR_STATUS = tuple(np.int8(code) for code in range(len(Status)))
 
 

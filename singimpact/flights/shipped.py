@@ -38,6 +38,7 @@ class Platform:
 V3 = ("avx2", "bmi", "bmi2", "f16c", "fma", "lzcnt", "movbe", "popcnt", "sse4.2")
 V4 = (*V3, "avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl")
 BATCHES = ("batch_entry",)  # lanes of states: twice as wide registers make it half again as fast, and nothing else
+# The first that fits a machine and has an entry is loaded there
 PLATFORMS = {
     "linux-x86-64-v4": Platform(V4, BATCHES),
     "linux-x86-64-v3": Platform(V3),
@@ -46,7 +47,6 @@ PLATFORMS = {
     "linux-aarch64": Platform(),
     "darwin-aarch64": Platform(),
 }
-"""The first that fits a machine and has an entry is loaded there."""
 NAMES = {"x86_64": "x86-64", "amd64": "x86-64", "aarch64": "aarch64", "arm64": "aarch64"}
 
 

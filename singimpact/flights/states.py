@@ -29,12 +29,12 @@ from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.period import phase_of
 from singimpact.oscillator.wall_acceleration import Zero, acceleration, sign_of_acceleration, zero_beside
 
+# Periods from which on launch times are reduced exactly: kernels reduce those before, to twice a double's bits
 FAR = 2.0**25
-"""Periods from which on launch times are reduced exactly: kernels reduce those before, to twice a double's bits."""
 
 
+# Numbers that every machine holds: of fewer the memory is not looked at
 FEW = 1 << 22
-"""Numbers that every machine holds: of fewer the memory is not looked at."""
 
 
 @dataclass(frozen=True)

@@ -32,14 +32,14 @@ from singimpact.oscillator.period import reduced
 from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.status import Cause, Status
 
+# Codes and columns of hits, as `CompiledModel.hits` returns them
 Flown = tuple[Array, Array]
-"""Codes and columns of hits, as `CompiledModel.hits` returns them."""
+# Fields that are filled of every flight
 PLAIN = ("flight_time", "velocity", "status", "cause", "notes")
-"""Fields that are filled of every flight."""
+# Of its size: so far a hit in doubles is from the true one at most, where it is isolated
 NEAR = Fraction(1, 10**7)
-"""Of its size: so far a hit in doubles is from the true one at most, where it is isolated."""
+# Of Halley's method at most: next to a graze the first ones are not short
 STEPS = 6
-"""Of Halley's method at most: next to a graze the first ones are not short."""
 
 
 @dataclass(frozen=True)

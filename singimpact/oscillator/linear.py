@@ -32,8 +32,8 @@ from singimpact.inputs import InputError
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.period import linear_in_t
 
+# Names in f that are no parameters
 MOVING = frozenset({"x", "xdot"})
-"""Names in f that are no parameters."""
 
 
 @dataclass(frozen=True)

@@ -10,10 +10,10 @@ from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.period import common_period, moving_in_time
 
 CLEARANCE, RESTITUTION = "clearance", "restitution"
+# Numbers of the second wall
 UPPER = ("upper", "upper_restitution")
-"""Numbers of the second wall."""
+# Numbers of `si.linear` that a model leaves out at these values
 LINEAR = {"amplitude": 1, "damping": 0, "stiffness": 1, "phase": 0}
-"""Numbers of `si.linear` that a model leaves out at these values."""
 
 
 def with_number(osc: Oscillator, name: str) -> Oscillator:

@@ -163,8 +163,8 @@ def _repeats(tree: Expression, period: Expression) -> bool:
     return True
 
 
+# Periods within which a period in two doubles is enough: phases above its part 1/TURNS keep to 2^-10 of a unit
 TURNS = 2.0**20
-"""Periods within which a period in two doubles is enough: phases above its part 1/TURNS keep to 2^-10 of a unit."""
 
 
 def reduced(tau: Array, period: Expression) -> Array:

@@ -24,14 +24,14 @@ from singimpact.codegen.scalar import in_floats
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.period import reduced
 
+# Below this part of |g| + |f| the difference g - f has lost five bits and is computed again with balls
 CANCELLATION = 1 / 32
-"""Below this part of |g| + |f| the difference g - f has lost five bits and is computed again with balls."""
 
+# Times up to which doubles keep the phase; later ones are reduced by the period
 NEAR = 64.0
-"""Times up to which doubles keep the phase; later ones are reduced by the period."""
 
+# Precisions tried until the sign of a is decided; what is still undecided is below 10^-2000 and is taken as zero
 BITS = (128, 512, 2048, 8192)
-"""Precisions tried until the sign of a is decided; what is still undecided is below 10^-2000 and is taken as zero."""
 
 
 class AtWall(NamedTuple):
@@ -211,8 +211,8 @@ def sign_of_acceleration(osc: Oscillator, tau: Expression, order: int = 0) -> in
 
 # The zero of a_c that a double stands for.
 
+# The highest order of a zero that is recognised
 HIGHEST = 6
-"""The highest order of a zero that is recognised."""
 
 
 @dataclass(frozen=True)

@@ -30,10 +30,10 @@ from singimpact.handed_on import flint
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import period_over
 
+# Factor of a step at whose end the root may lie
 SHORTER = 0.93
-"""Factor of a step at whose end the root may lie."""
+# Of a step: where the sign at its end is still open, the ball of the state is too wide for any step
 SHORTEST = 0.05
-"""Of a step: where the sign at its end is still open, the ball of the state is too wide for any step."""
 
 
 @dataclass(frozen=True)

@@ -57,20 +57,20 @@ from singimpact.handed_on import flint
 from singimpact.oscillator.model import Oscillator
 
 Jet = list[Any]
+# Monomials of degree 1: tau, v, p
 FIRST = ((0,), (1,), (2,))
-"""Monomials of degree 1: tau, v, p."""
 SECOND = tuple((i, j) for i in range(3) for j in range(i, 3))
 MONOMIALS: tuple[tuple[int, ...], ...] = ((), *FIRST, *SECOND)
 PLACES = {monomial: place for place, monomial in enumerate(MONOMIALS)}
+# Which coefficients of two factors are multiplied, and the coefficient to which the product belongs
 PRODUCTS = tuple(
     (i, j, PLACES[tuple(sorted(a + b))])
     for i, a in enumerate(MONOMIALS)
     for j, b in enumerate(MONOMIALS)
     if len(a + b) <= 2
 )
-"""Which coefficients of two factors are multiplied, and the coefficient to which the product belongs."""
+# Values of the partial derivatives of a function by its arguments, by the orders of each
 Partials = Mapping[tuple[int, ...], Any]
-"""Values of the partial derivatives of a function by its arguments, by the orders of each."""
 
 
 @cache

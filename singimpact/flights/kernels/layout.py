@@ -30,8 +30,8 @@ from singimpact.flights.kernels.state import (
 # Entries of `sizes`: the kind of work; states, impacts or times; waves; rows of the tables and of the work of a flight;
 # room for Taylor coefficients; constants of a recurrence; impacts of an iteration; constants of rho.
 KIND, COUNT, WAVES, ROWS, ROOM, CONSTANTS, IMPACTS, RHO = range(8)
-# Where the period and the scalars of a model begin; the thirteen rules come first.
-TURN, SCALARS = 13, 18
+# Where the distance of the walls, the period and the scalars of a model begin; the thirteen rules come first.
+GAP, TURN, SCALARS = 11, 13, 18
 # Entries of 1/k! in a table.
 TERMS = 24
 

@@ -26,27 +26,37 @@ def fill_fine(p: Any, rest: Any, step: float, fine: Any, space: Any) -> None:
     p, rest : numbers of the model and what their doubles leave out. space : scratch of shape (4, n, 2).
     """
     n = fine.shape[1]
-    # exp(h A) column by column: each is the series applied to a unit vector
+    # fine[1] = exp(h A) column by column: each is the series applied to a unit vector
     for i in range(n):
         for j in range(n):
             space[0, j, 0], space[0, j, 1] = 1.0 * (i == j), 0.0
-        for m in range(LEVEL + 1):
-            for j in range(n):
-                fine[m, j, i, 0], fine[m, j, i, 1] = space[0, j, 0], space[0, j, 1]
-            if m < LEVEL:
-                move_twice(space, step, 0.0, p, rest)
-    # fine[LEVEL] is exp(LEVEL step A) for now; its powers follow, and the identity takes its place
-    for m in range(LEVEL + 1, 2 * LEVEL):
-        for i in range(n):
-            for j in range(n):
-                space[0, j, 0], space[0, j, 1] = fine[max(m - 1, LEVEL), j, i, 0], fine[max(m - 1, LEVEL), j, i, 1]
-            multiply_twice(fine[LEVEL], space)
-            for j in range(n):
-                fine[m, j, i, 0], fine[m, j, i, 1] = space[0, j, 0], space[0, j, 1]
-    for m in range(2 * LEVEL - 1, LEVEL, -1):
-        for i in range(n):
-            for j in range(n):
-                fine[m, i, j, 0], fine[m, i, j, 1] = fine[m - 1, i, j, 0], fine[m - 1, i, j, 1]
+        keep_column(fine[0], i, space)
+        move_twice(space, step, 0.0, p, rest)
+        keep_column(fine[1], i, space)
+    # its powers up to exp(LEVEL h A), which is fine[LEVEL] for now; the powers of this one; the identity in its place
+    fill_powers(fine, 1, 2, LEVEL + 1, space)
+    fill_powers(fine, LEVEL, LEVEL + 2, 2 * LEVEL, space)
+    for i in range(n):
+        for j in range(n):
+            fine[LEVEL + 1, i, j, 0], fine[LEVEL + 1, i, j, 1] = fine[LEVEL, i, j, 0], fine[LEVEL, i, j, 1]
+            fine[LEVEL, i, j, 0], fine[LEVEL, i, j, 1] = fine[0, i, j, 0], fine[0, i, j, 1]
+
+
+def fill_powers(fine: Any, one: int, begin: int, end: int, space: Any) -> None:
+    """fine[begin], ..., fine[end - 1] become the second, third, ... power of fine[one]."""
+    for i in range(fine.shape[1]):
+        for j in range(fine.shape[1]):
+            space[0, j, 0], space[0, j, 1] = fine[one, j, i, 0], fine[one, j, i, 1]
+        for m in range(begin, end):
+            multiply_twice(fine[one], space)
+            keep_column(fine[m], i, space)
+
+
+def keep_column(matrix: Any, i: int, space: Any) -> None:
+    """Column i of a matrix becomes y = space[0]."""
+    y = space[0]
+    for j in range(len(y)):
+        matrix[j, i, 0], matrix[j, i, 1] = y[j, 0], y[j, 1]
 
 
 def multiply_twice(matrix: Any, space: Any) -> None:
@@ -58,7 +68,7 @@ def multiply_twice(matrix: Any, space: Any) -> None:
     for i in range(n):
         s, s_low = 0.0, 0.0
         for k in range(n):
-            if matrix[i, k, 0] != 0.0:
+            if matrix[i, k, 0] != 0.0 and before[k, 0] != 0.0:
                 x, x_low = product_twice(matrix[i, k, 0], matrix[i, k, 1], before[k, 0], before[k, 1])
                 s, s_low = sum_twice(s, s_low, x, x_low)
         y[i, 0], y[i, 1] = s, s_low
