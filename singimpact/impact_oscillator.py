@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
     from singimpact.branches.orbits import PeriodicOrbits
     from singimpact.dynamics.chatter import ChatterLimit
+    from singimpact.dynamics.families import OscillatorFamily
     from singimpact.dynamics.gamma_proof.proof import CertifiedGamma
     from singimpact.dynamics.orbit import Orbit
     from singimpact.flights.enclosed_impact import EnclosedImpact
@@ -60,7 +61,7 @@ class ImpactOscillator(Oscillator):
     # studies of the model as a whole, each documented as a function of `singimpact`
     basins, bifurcation, lyapunov, threshold = Study(), Study(), Study(), Study()
     tangency_points, classify, grown_gamma, release_map = Study(), Study(), Study(), Study()
-    border_orbits, transitions, explore, selftest = Study(), Study(), Study(), Study()
+    border_orbits, transitions, explore, selftest, ensemble = Study(), Study(), Study(), Study(), Study()
 
     @with_walls(_at_walls)
     def first_hit(
@@ -457,6 +458,28 @@ class ImpactOscillator(Oscillator):
         from singimpact.flights.off_wall import launch
 
         return launch(self, x, xdot, t, horizon=horizon)
+
+    @takes_two_walls
+    def over(self, **numbers: Any) -> OscillatorFamily:
+        """Models that differ from this in numbers: a family, flown in compiled loops.
+
+        Parameters
+        ----------
+        numbers : arrays, or numbers, that broadcast: clearance, restitution, parameters, of two walls `upper` and
+            `upper_restitution`, and what `bifurcation` puts in (amplitude, damping, stiffness, phase).
+
+        Returns
+        -------
+        OscillatorFamily : `.impact_map`, `.iterate`, `.lyapunov`; `many[i]` is one of the models.
+
+        Examples
+        --------
+        >>> linear(2, 0, "1/2").over(omega=[2, 3], clearance=[[0], [0.1]]).shape
+        (2, 2)
+        """
+        from singimpact.dynamics.families import OscillatorFamily
+
+        return OscillatorFamily(self, numbers)
 
     @takes_two_walls
     def to_toml(self) -> str:

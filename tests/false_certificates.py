@@ -1,12 +1,13 @@
-"""False and malformed certificates, each with the condition of the checker that refuses it, and checkers without it."""
+"""False and malformed certificates, each with the condition of the second program that refuses it.
+
+`without` is the program without one condition.
+"""
 
 from __future__ import annotations
 
-import os
-import sys
 import types
 
-from singimpact.algebra import checking
+from singimpact.certificates import claims_proofs
 
 
 def const(value):
@@ -60,85 +61,98 @@ STEPS = [[["0", "1"], "1"], [["0", "1"], "1"]]
 
 # name -> (the condition in the source, what stands there without it, a certificate that it must refuse)
 WEAKENED = {
-    "an empty expansion": ("bool(expansion) and all(", "all(", positive([], expansion=[])),
+    "an empty expansion": ("bool(seen) and total == left", "total == left", positive([], expansion=[])),
     "a negative part": (
-        "all(value > 0 for value in expansion.values())", "True", positive(poly(-1), expansion=[[[0], -1]])),
-    "another polynomial": ("and left == total", "", positive(poly(-1), expansion=[[[0], 1]])),
+        " and number(value) > 0, \"a part", ", \"a part", positive(poly(-1), expansion=[[[0], -1]])),
+    "a part of zero": (
+        "number(value) > 0, \"a part", "number(value) >= 0, \"a part", positive([], expansion=[[[0], 0]])),
+    "another polynomial": ("bool(seen) and total == left", "bool(seen)", positive(poly(-1), expansion=[[[0], 1]])),
     "an interval without inside": (
-        "if not rational(low) < rational(high):", "if False:",
+        "need(number(low) < number(high) and raised == 0", "need(raised == 0",
         positive(poly(-2, 3, -1), ("2", "1"), 2, 0, [[[1], 1]])),
     "a finite interval raised": (
-        "if more if low not in INFINITE and high not in INFINITE else proof[\"degree\"][index]:", "if False:",
-        positive(poly(0, 1), ("0", "oo"), 3, 0, [[[1], 1]])),
+        " and raised == 0, ", ", ", positive(poly(0, 1), ("0", "1"), 1, 3, [[[1], 1]])),
+    "a half-line with a degree": (
+        "need(degree == 0, ", "need(True, ", positive(poly(0, 1), ("0", "oo"), 3, 0, [[[1], 1]])),
+    "a sign of 2": (
+        "need(data[\"sign\"] in (-1, 1) and type(data[\"sign\"]) is int, ", "need(True, ",
+        positive(poly(1), expansion=[[[0], 2]], sign=2)),
     "places out of order": (
-        "order == sorted(order) and ", "",
+        "need(all(one < two for one, two in pairwise(ordered)), ", "need(True, ",
         chain(poly(-1, 0, 1), [place("0", -1), place("2", 1, expansion=[[[], 3]]), place("0", -1)],
               [["0", "2"], ["2", "0"]], True)),
     "gaps that are none": (
-        "and gaps == data[\"roots\"]", "", chain(poly(-1, 0, 1), [place("0", -1)], [["2", "3"]], False)),
+        "need(gaps == data[\"roots\"], ", "need(True, ",
+        chain(poly(-1, 0, 1), [place("0", -1)], [["2", "3"]], False)),
     "no others, unproved": (
-        "and data[\"all\"] == (len(gaps) == degree)", "",
+        "need(data[\"all\"] is (len(gaps) == letters.degree(poly, 0)), ", "need(True, ",
         chain(poly(-1, 0, 1), [place("0", -1), place("2", 1, expansion=[[[], 3]])], [["0", "2"]], True)),
     "a sign unproved": (
-        "if point[\"sign\"] not in (-1, 1) or not _expands(signed, point | {\"box\": data[\"box\"]}):",
-        "if point[\"sign\"] not in (-1, 1):",
+        "need(expands(letters, 1, value, data[\"box\"], point), ", "need(True, ",
         chain(poly(1, 0, 1), [place("0", -1), place("1", 1)], [["0", "1"]], False)),
     "a derivative turned round": (
-        "rational(data[\"first\"]) <= 0 or ", "",
+        "number(data[\"first\"]) > 0 and ", "",
         count([["-1", "0", "1"], ["0", "-1"], ["1"]], [[["0", "-1"], "1"], [["0", "-1"], "1"]], "-2", "2", -2, "-2")),
     "another derivative": (
-        "or slope != times(chain[1], {(0,): rational(data[\"first\"])})", "",
+        " and parts[0].derivative(0) == parts[1] * number(data[\"first\"]), ", ", ",
         count([["-1", "0", "1"], ["1"]], [[["-1", "0", "1"], "1"]], "-2", "2", 0)),
     "a step turned round": (
-        "rational(scale) <= 0 or chain", "chain",
+        "need(number(scale) > 0 and (not last", "need((not last",
         count([["1", "0", "1"], ["0", "1"], ["1"]], [[["0", "1"], "-1"], [["0", "1"], "1"]], "-2", "2", 2)),
     "a step that is wrong": (
-        "or chain[n] != right ", "", count([["1", "0", "1"], ["0", "1"], ["1"]], STEPS, "-2", "2", 2)),
+        "need(parts[n] == row(quotient) * parts[n + 1] - rest * number(scale), ", "need(True, ",
+        count([["1", "0", "1"], ["0", "1"], ["1"]], STEPS, "-2", "2", 2)),
     "a last step of another scale": (
-        "or (not last and rational(scale) != 1)", "",
+        " and (not last or number(scale) == 1), ", ", ",
         count(SQUARE_LESS_ONE, [[["0", "1"], "1"], [["0", "1"], "7"]], "-2", "2", 2)),
     "a chain cut short": (
-        "len(data[\"steps\"]) == len(chain) - 1 and ", "",
+        "need(len(data[\"steps\"]) == len(parts) - 1 and ", "need(",
         count([["1", "0", "1"], ["0", "1"], ["1"]], [], "-2", "2", 2)),
     "a multiple root": (
-        "and set(chain[-1]) == {(0,)}", "",
+        " and parts[-1].is_constant()", "",
         count([["-3", "7", "-5", "1"], ["7", "-10", "3"], ["-1", "1"]],
               [[["-5/9", "1/3"], "8/9"], [["-7", "3"], "1"]], "1", "4", 0, "1")),
-    "ends out of order": ("and ends[0] < ends[1]", "", count(SQUARE_LESS_ONE, STEPS, "2", "-2", -2)),
+    "the polynomial 0": (" and parts[-1] != 0, ", ", ", count([[], []], [[[], "1"]], "-2", "oo", 0)),
+    "ends out of order": (
+        "need(place_of(data[\"low\"]) < place_of(data[\"high\"]), ", "need(True, ",
+        count(SQUARE_LESS_ONE, STEPS, "2", "-2", -2)),
     "a root at the end": (
-        " - at_end == data[\"roots\"]", " == data[\"roots\"]", count(SQUARE_LESS_ONE, STEPS, "-2", "1", 2)),
+        "changes(data[\"high\"]) - at_end", "changes(data[\"high\"])", count(SQUARE_LESS_ONE, STEPS, "-2", "1", 2)),
     "another count": (
-        "changes[0] - changes[1] - at_end == data[\"roots\"]", "True", count(SQUARE_LESS_ONE, STEPS, "-2", "2", 5)),
+        " and roots == data[\"roots\"], ", ", ", count(SQUARE_LESS_ONE, STEPS, "-2", "2", 5)),
+    "a count in two variables": (
+        "need(len(letters.names) == 1, ", "need(True, ",
+        count(SQUARE_LESS_ONE, STEPS, "-2", "2", 0) | {"variables": ["x", "y"]}),
     "degrees at infinity, falling": (
-        "if at in INFINITE and more < 0:", "if False:", value(const(1), poly(0, 1), "oo", [const(1), const(1)])),
+        "letters.constant(0) if more < 0 else over", "over", value(const(1), poly(0, 1), "oo", [const(1), const(1)])),
     "degrees at infinity, rising": (
-        "and not (at in INFINITE and more > 0)", "", value(poly(0, 0, 1), poly(0, 1), "oo", [const(1), const(1)])),
+        "grows = more > 0", "grows = False", value(poly(0, 0, 1), poly(0, 1), "oo", [const(1), const(1)])),
     "a pole at infinity that is none": (
-        "(more > 0 if at in INFINITE else not below)", "(at in INFINITE or not below)",
-        value(poly(0, 1), poly(0, 1), "oo", "infinite")),
-    "a pole that is none": (
-        "(more > 0 if at in INFINITE else not below)", "True", value(const(1), const(1), "0", "infinite")),
+        "grows = more > 0", "grows = True", value(poly(0, 1), poly(0, 1), "oo", "infinite")),
+    "a pole that is none": ("need(grows and over != 0", "need(over != 0", value(const(1), const(1), "0", "infinite")),
     "nothing by nothing is no pole": (
-        "return bool(above) and (more", "return (more", value(poly(0, 1), poly(0, 1), "0", "infinite")),
+        "need(grows and over != 0", "need(grows", value(poly(0, 1), poly(0, 1), "0", "infinite")),
     "a value with the variable in it": (
-        "free = not any(key[index] for side in stated for key in side) and", "free =",
+        "need(all(letters.degree(polynomial, index) <= 0 for polynomial in stated), ", "need(True, ",
         value(const(2), const(1), "0", [poly(0, 2), poly(0, 1)])),
     "zero by zero": (
-        "bool(below and stated[1]) and", "bool(stated[1]) and",
+        "need(not grows and stated[1] != 0", "need(stated[1] != 0",
         value(poly(0, 1), poly(0, 1), "0", [const(5), const(1)])),
-    "a value by zero": ("bool(below and stated[1])", "bool(below)", value([], const(1), "0", [[], []])),
+    "a value by zero": (" and stated[1] != 0, ", ", ", value([], const(1), "0", [[], []])),
     "another value": (
-        "and times(above, stated[1]) == times(below, stated[0])", "",
+        "need(over * stated[1] == under * stated[0], ", "need(True, ",
         value(const(1), const(1), "0", [const(5), const(1)])),
     "a denominator that is zero": (
-        "if not polys[1]:\n        return False",
-        "if not polys[1]:\n        polys[1] = {(0,): ONE}\n        below = polys[1]",
-        value(const(1), [], "0", [const(1), const(1)])),
-    "a form that vanishes on a line": ("4 * a * c > b * b", "4 * a * c >= b * b", definite(["1", "2", "1"])),
-    "a form of another sign": ("a > 0 and", "", definite(["-1", "0", "-1"])),
-    "a saddle": (" and 4 * a * c > b * b", "", definite(["1", "0", "-1"])),
+        "need(below != 0, ", "need(True, ", value(const(1), [], "0", "infinite")),
+    "a variable counted from the end": (
+        "need(type(index) is int and 0 <= index < len(letters.names), ", "need(True, ",
+        value(const(2), const(1), "0", [const(2), const(1)]) | {"index": -1}),
+    "a form that vanishes on a line": ("b * b < 4 * a * c", "b * b <= 4 * a * c", definite(["1", "2", "1"])),
+    "a form of another sign": ("and a * sign > 0 ", "", definite(["-1", "0", "-1"])),
+    "a saddle": (" and b * b < 4 * a * c", "", definite(["1", "0", "-1"])),
+    "a form and the sign 2": ("type(sign) is int and sign in (-1, 1) and ", "", definite(["6", "4", "1"], 2)),
     "another sentence": (
-        "certificate.get(\"says\", said) == said and ", "", definite(["6", "4", "1"]) | {"says": "1 = 2"}),
+        "need(data.get(\"says\", said) == said, ", "need(True, ", definite(["6", "4", "1"]) | {"says": "1 = 2"}),
 }  # fmt: skip
 
 E = [[[0, 1], 1]]  # the small variable, the second of (w, e)
@@ -158,54 +172,62 @@ SQUARE = [[[2, 0], 1]]
 LINE = [[[1, 0], 1]]  # w
 E_SQUARED_IS_2 = [[[0, 2], 1], [[0, 0], -2]]
 
+E_AND_1 = [*E, *ONE_TWO]
+
 IN_IDENTITIES = {
-    "a difference": ("return not difference", "return True", identity([const(1), const(1)], [const(2), const(1)])),
+    "a difference": (
+        "need(difference == 0, ", "need(True, ", identity([const(1), const(1)], [const(2), const(1)])),
     "nothing by nothing": (
-        "else lowest)", "else True)", identity([[], []], [const(1), const(1)])),
+        "need(letters.with_degree(polynomial, weights, None if order is None else 0) != 0, ", "need(True, ",
+        identity([[], []], [const(1), const(1)])),
     "a multiplier of zero": (
-        "sound = bool(multiplier) and", "sound =",
+        "letters.degree(multiplier, last) == 0", "letters.degree(multiplier, last) <= 0",
         identity([const(1), const(1)], [const(2), const(1)], [[], [], ROOT_OF_TWO])),
     "a multiplier that vanishes": (
-        " and not any(key[-1] for key in multiplier)", "",
+        " and letters.degree(multiplier, last) == 0", "",
         identity([const(1), const(1)], [const(2), const(1)], [ROOT_OF_TWO, const(-1), ROOT_OF_TWO])),
     "a relation of a higher degree": (
-        "max(key[-1] for key in zero) == 2 and", "",
+        "letters.degree(relation, last) == 2 and ", "",
         identity([OF_DEGREE_3, poly(1, 1)], [[], const(1)], [const(1), const(1), OF_DEGREE_3])),
     "a left denominator that the relation makes zero": (
-        "_invertible(left[1], relation, truncation) and", "",
+        "in (below, under):\n        lowest", "in (under,):\n        lowest",
         identity([ROOT_OF_TWO, ROOT_OF_TWO], [const(5), const(1)], [const(1), const(-4), ROOT_OF_TWO])),
     "a right denominator that the relation makes zero": (
-        "and _invertible(right[1], relation, truncation)", "",
+        "in (below, under):\n        lowest", "in (below,):\n        lowest",
         identity([const(5), const(1)], [ROOT_OF_TWO, ROOT_OF_TWO], [const(1), const(4), ROOT_OF_TWO])),
     "a cofactor that is another": (
-        "and truncation.of(times(multiplier, difference)) == truncation.of(times(cofactor, zero))", "",
+        "need(left == right, ", "need(True, ",
         identity([const(1), const(1)], [const(2), const(1)], [const(1), [], ROOT_OF_TWO])),
     "a statement that is equal to itself": (
-        "return left != right and _equal(left", "return _equal(left",
+        "need(lowest_form(*sides[0]) != lowest_form(*sides[1]), ", "need(True, ",
         identity([poly(1, 1), const(1)], [poly(1, 1), const(1)])),
     "a composition that is equal to itself": (
-        "return data[\"left\"] != data[\"right\"] and", "return", composed(side(LINE), side(LINE))),
+        "need(forms[0] != forms[1], ", "need(True, ", composed(side(LINE), side(LINE))),
     "an image twice": (
-        "len(images) != len(data[side][\"images\"]) or", "",
+        "len(images) == len(side[\"images\"]) and ", "",
         composed(side(LINE, (0, (TWO_TWO, ONE_TWO)), (0, (ONE_TWO, ONE_TWO))), side(ONE_TWO))),
     "an image by zero": (
-        "            return False\n        above", "            pass\n        above",
-        composed(side(ONE_TWO, (0, (ONE_TWO, []))), side(ONE_TWO, (1, (ONE_TWO, ONE_TWO))))),
+        "need(lowest != 0, ", "need(True, ",
+        composed(side(E_AND_1, (0, (ONE_TWO, []))), side(LINE, (0, (E_AND_1, ONE_TWO))))),
+    "an image that the relation makes zero": (
+        "need(resultant(letters, lowest, zero, len(letters.names) - 1) != 0, ", "need(True, ",
+        composed(side(E_AND_1, (0, (ONE_TWO, E_SQUARED_IS_2))), side(LINE, (0, (E_AND_1, ONE_TWO))),
+                 [ONE_TWO, [], E_SQUARED_IS_2])),
     "a quotient by something small": (
-        "return poly if self.order is None else cut(poly, self.weights, 0)", "return poly",
+        "None if order is None else 0) != 0, \"a quotient", "None) != 0, \"a quotient",
         composed(side([[[0, 2], 1]], below=E), side([]), order=1, weights=(0, 1))),
     "negative weights": (
-        "type(weight_) is int and weight_ >= 0 for", "type(weight_) is int for",
+        "type(each) is int and 0 <= each <= EXPONENT for", "type(each) is int for",
         composed(side(LINE, (0, ([*LINE, *ONE_TWO], ONE_TWO))), side([*LINE, *ONE_TWO]), order=0, weights=(0, -1))),
     "an order that is none": (
-        "type(truncation.order) is not int or truncation.order < 0", "False",
+        "type(order) is int and least", "least",
         composed(side(LINE, (0, ([*LINE, *ONE_TWO], ONE_TWO))), side([*LINE, *ONE_TWO]), order=True)),
     "weights without an order": (
-        "if truncation.order is None and any(truncation.weights):", "if False:",
+        "need(order is not None or not any(weights), ", "need(True, ",
         composed(side(LINE, (0, ([*LINE, *ONE_TWO], ONE_TWO))), side([*LINE, *ONE_TWO]), weights=(0, 1))),
     "a small multiplier": (
-        " and truncation.spared(multiplier, zero)", "",
-        composed(side(ONE_TWO), side(TWO_TWO), [LINE, [], E_SQUARED_IS_2], 0, (1, 0))),
+        "all(letters.with_degree(polynomial, weights, 0) == polynomial for polynomial in (multiplier, relation))",
+        "True", composed(side(ONE_TWO), side(TWO_TWO), [LINE, [], E_SQUARED_IS_2], 0, (1, 0))),
 }  # fmt: skip
 
 
@@ -230,86 +252,86 @@ RISE = [[[2, 0, 1], 1], [[1, 0, 1], -1]]  # of the flight: (z^2 - z) t
 ANY_SLOPE = [[[0, 1], ONE_THREE], [[0, 1], [[[0, 0, 0], -1]]]]  # x' and -x'
 
 IN_MOTIONS = {
-    "another motion": (
-        "if residual or not starts or data[\"launch\"] is None:\n        return not residual and starts and",
-        "if not starts or data[\"launch\"] is None:\n        return starts and",
-        motion([*VT, [[0, 0, 2], 2]], PUSH)),
-    "a start elsewhere": ("not at(height, 2, ZERO) and at(", "at(", motion(FALL + ONE_THREE, PUSH)),
+    "another motion": ("need(rest == 0, ", "need(True, ", motion([*VT, [[0, 0, 2], 2]], PUSH)),
+    "a start elsewhere": ("letters.at(x, 2, 0) == 0 and ", "", motion(FALL + ONE_THREE, PUSH)),
     "another start": (
-        " and at(speed, 2, ZERO) == line(ZERO, 1, 1, size)", "", motion([[[0, 1, 1], 2], *TT], PUSH)),
+        " and letters.at(speed, 2, 0) == v, ", ", ", motion([[[0, 1, 1], 2], *TT], PUSH)),
     "a landing of no launch": (
-        " and data[\"landing\"] is None\n    launch", "\n    launch", motion(FALL, PUSH, landing=T)),
+        "need(data[\"launch\"] is not None or data[\"landing\"] is None, ", "need(True, ",
+        motion(FALL, PUSH, landing=T)),
     "a launch that depends on v": (
-        "any(key[1] for key in launch) or", "",
-        motion(FALL, PUSH, launch=[*BACK, [[0, 2, 0], 1]], order=1)),
+        "letters.degree(launch, 1) <= 0 and ", "", motion(FALL, PUSH, launch=[*BACK, [[0, 2, 0], 1]], order=1)),
     "a launch of too low a degree": (
-        " or any(weight(key, weights) < weights[1] for key in launch)", "",
+        " and all(n >= weights[1] for n in degrees), ", ", ",
         motion(FALL, PUSH, launch=BACK, order=1, weights=(1, 2, 1))),
-    "a launch that does not come back": ("return not back\n", "return True\n", motion(FALL, PUSH, launch=T)),
+    "a launch that does not come back": (
+        "need(letters.with_degree(back, weights, order) == 0, ", "need(True, ", motion(FALL, PUSH, launch=T)),
     "a landing after no return": (
-        "return not back and cut(", "return cut(", motion(FALL, PUSH, launch=T, landing=[[[0, 0, 1], 3]])),
+        "need(letters.with_degree(back, weights, order) == 0, ", "need(True, ",
+        motion(FALL, PUSH, launch=T, landing=[[[0, 0, 1], 3]])),
     "another landing": (
-        " and cut(landed, weights, order) == cut(terms(data[\"landing\"]), weights, order)", "",
+        "need(letters.with_degree(landed - landing, weights, order) == 0, ", "need(True, ",
         motion(FALL, PUSH, launch=BACK, landing=[[[0, 0, 1], 2]])),
     "another flight": (
-        "        return False\n    ends", "        pass\n    ends",
+        "need(letters.with_degree(speed.derivative(0) - t * pushed, weights, order) == 0, ", "need(True, ",
         flight([[[2, 0, 1], 2], [[1, 0, 1], -2]], [[[0, 0, 1], -2]], [[[0, 0, 1], 2]])),
-    "another end of a flight": ("return ends == stated", "return True", flight(RISE, BACK, [[[0, 0, 1], 3]])),
+    "another end of a flight": (
+        "need(letters.with_degree(letters.at(polynomial, 0, at) - stated, weights, order) == 0, ", "need(True, ",
+        flight(RISE, BACK, [[[0, 0, 1], 3]])),
+    "weights of a flight": (
+        "need(weights[:3] == [0, 1, 1] and ", "need(", flight(RISE, BACK, [[[0, 0, 1], 3]]) | {"weights": [0, 0, 9]}),
     "weights of letters": (
-        " or any(weights[3:])", "",
+        "weights[1] >= 1 and not any(weights[3:]), ", "weights[1] >= 1, ",
         motion([[[0, 1, 1, 0], 1]], [[[[0, 0, 0, 1], 1]]], order=2, weights=(1, 1, 1, 9))),
     "other weights of the state": (
-        " or not right", "", motion(VT, [[], [[[0, 0, 0], 1]]], order=1, weights=(9, 1, 9))),
-    "an order of a motion that is none": (
-        "type(order) is not int or order < 1", "False", motion(VT, PUSH, order=0)),
+        "weights[0] == weights[2] == 1 and ", "", motion(VT, [[], [[[0, 0, 0], 1]]], order=1, weights=(9, 1, 9))),
+    "an order of a motion that is none": ("least <= order <= EXPONENT", "order <= EXPONENT", motion(VT, PUSH, order=0)),
     "a jet that is a function of time": (
-        "if any(any(key[:3]) for jet", "if False and any(any(key[:3]) for jet",
+        "need(all(letters.degree(found, n) <= 0 for n in range(3)), ", "need(True, ",
         motion([*VT, [[0, 0, 3], 1]], [[[[0, 0, 1], 6]]])),
-    "a jet twice": ("len(set(pairs)) < len(pairs) or", "", motion(FALL, PUSH, ANY_SLOPE)),
+    "a jet twice": ("need((i, k) not in seen, ", "need(True, ", motion(FALL, PUSH, ANY_SLOPE)),
     "a power that is no number": (
-        " or not all(type(n) is int and n >= 0 for pair in pairs for n in pair)", "",
-        motion(FALL, PUSH, [[[0, True], []]])),
+        "all(type(n) is int and n >= 0 for n in (i, k)) and ", "", motion(FALL, PUSH, [[[0, True], []]])),
     "weights of an exact motion": (
-        "if order is None and weights[:3] != (1, 1, 1):", "if False:", motion(FALL, PUSH, weights=(1, 2, 1))),
-    "a force at rest": ("if (0, 0) in pairs:", "if False:", motion(FALL, [], [[[0, 0], [[[0, 0, 0], -2]]]])),
+        "need(order is not None or weights[1] == 1, ", "need(True, ", motion(FALL, PUSH, weights=(1, 2, 1))),
+    "a force at rest": (" and i + k > 0, ", ", ", motion(FALL, [], [[[0, 0], [[[0, 0, 0], -2]]]])),
 }  # fmt: skip
 
-IN_PLAIN = {
-    "exponents twice": ("or key in sums", "", positive([[[0], -1], [[0], 1]], expansion=[[[0], 1]])),
-    "negative exponents": (
-        "type(power) is not int or power < 0", "type(power) is not int",
-        value([[[-1], 1]], const(1), "1", [const(1), const(1)])),
+IN_DATA = {
+    "exponents twice": (
+        "need(key not in found and ", "need(", positive([[[0], -1], [[0], 1]], expansion=[[[0], 1]])),
     "a coefficient of zero": (
-        "if not all(sums.values()):", "if False:", identity([[], const(1)], [[[[3], 0]], const(1)])),
+        " and number(value) != 0, ", ", ", value([[[0], 0]], const(1), "0", [[], const(1)])),
     "exponents that are not whole": (
-        "type(power) is not int or power < 0", "power < 0", value([[[True], 1]], const(1), "1", [const(1), const(1)])),
+        "            need(all(type(n) is int and 0 <= n <= EXPONENT for n in key), \"an exponent that is none\")\n"
+        "            need(key", "            need(key", value([[[True], 1]], const(1), "1", [const(1), const(1)])),
     "coefficients in floating point": (
-        "or not isinstance(value, int | str)", "", definite([6.0, 4.0, 1.0])),
-    "coefficients that are words": ("isinstance(value, bool) or", "", definite([True, 0, True])),
+        "re.fullmatch(r\"-?\\d+(/0*[1-9]\\d*)?\", text, re.ASCII) and ", "", definite([6.0, 4.0, 1.0])),
+    "a name twice": (
+        "need(len(set(self.names)) == len(self.names), ", "need(True, ",
+        definite(["6", "4", "1"]) | {"variables": ["x", "x"]}),
+    "a name that is none": (
+        " and name.isidentifier()", "", definite(["6", "4", "1"]) | {"variables": ["x", "1"]}),
+    "a field that has no meaning": (
+        "fields_are(set(data) - {\"says\"}, fields | EVERY)", "pass", definite(["6", "4", "1"]) | {"proves": "all"}),
 }  # fmt: skip
+EVERY = WEAKENED | IN_IDENTITIES | IN_MOTIONS | IN_DATA
 
 
-CHAIN = ("plain", "sentences", "checking")
-
-
-def without(condition, instead, name):
-    """`accepts` of a checker one of whose files has one condition taken out."""
-    with open(f"{os.path.dirname(checking.__file__)}/{name}.py") as file:
-        text = file.read()
-    assert text.count(condition) == 1, f"{condition!r} stands {text.count(condition)} times in {name}.py"
-    return loaded(name, text.replace(condition, instead))
-
-
-def loaded(name, text):
-    """`accepts` of a checker with another source of one of its files."""
-    known = {part: sys.modules[f"singimpact.algebra.{part}"] for part in CHAIN}
+def accepts(certificate, program=claims_proofs):
+    """Whether the second program accepts a certificate, with or without its sentence."""
     try:
-        for part in CHAIN:
-            made = types.ModuleType(f"singimpact.algebra.{part}")
-            with open(known[part].__file__) as file:
-                source = text if part == name else file.read()
-            exec(compile(source, f"{part}.py", "exec"), made.__dict__)
-            sys.modules[made.__name__] = made
-        return made.accepts
-    finally:
-        sys.modules.update({f"singimpact.algebra.{part}": module for part, module in known.items()})
+        program.check_certificate(certificate)
+    except program.Refused:
+        return False
+    return True
+
+
+def without(condition, instead):
+    """`accepts` of the second program with one condition taken out."""
+    with open(claims_proofs.__file__, encoding="utf-8") as file:
+        text = file.read()
+    assert text.count(condition) == 1, f"{condition!r} stands {text.count(condition)} times"
+    program = types.ModuleType("weakened")
+    exec(compile(text.replace(condition, instead), "weakened.py", "exec"), program.__dict__)
+    return lambda certificate: accepts(certificate, program)

@@ -57,8 +57,7 @@ def values() -> dict[str, str]:
 CHATTERING = "linear, chattering"
 OMEGAS = {"linear": 2.8, "duffing": 1.7, CHATTERING: 2.0}
 CLEARANCES = {"linear": 0.3, "duffing": 0.3, CHATTERING: 0.7}
-RESTITUTIONS = (0.5, 0.7, 0.9, 0.99, 0.999)
-"""Of the models that timed calls take in turn."""
+RESTITUTIONS = (0.5, 0.7, 0.9, 0.99, 0.999)  # of the models that timed calls take in turn
 
 
 def counted(count: int, noun: str) -> str:
@@ -164,8 +163,7 @@ class Draws:
         return States(self.family, restitution, tau[: self.count], v[: self.count])
 
 
-LARGEST = 100_000
-"""States that are drawn, so that a method of fewer states has the first ones of the others."""
+LARGEST = 100_000  # states that are drawn, so that a method of fewer states has the first ones of the others
 
 
 def compile_entries(osc: ImpactOscillator) -> None:

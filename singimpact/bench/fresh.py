@@ -39,9 +39,9 @@ class Cost:
     answer: Any
 
 
+# numpy starts a thread for each core. They spin while they wait: 80 ms of CPU on two cores that no script asked for. A
+# user may set the same variable.
 NO_SPINNING = {"OPENBLAS_NUM_THREADS": "1"}
-"""numpy starts a thread for each core. They spin while they wait: 80 ms of CPU on two cores that no script asked for.
-A user may set the same variable."""
 
 
 @lru_cache(maxsize=1)

@@ -6,6 +6,7 @@ The first line of a page has a digest of the sources that it was measured with.
 import csv
 import hashlib
 import re
+import tomllib
 from collections.abc import Mapping, Sequence
 from io import StringIO
 from pathlib import Path
@@ -13,40 +14,12 @@ from pathlib import Path
 from singimpact.bench.measuring import Row
 from singimpact.bench.report import in_words
 
-COMMAND = "singimpact bench --format page -o docs/benchmarks.md"
-ABOUT = """# Run time against error
-
-CPU time of a state, an impact, a pixel or a value of the clearance, beside heyoka (Taylor's method) and scipy (DOP853),
-both with an event, and fifty lines of numba (`singimpact/bench/peers/fixed_steps.py`). *Linear* is x'' + x = cos 2.8t
-over a wall at 0.3 (chatter: cos 2t, 0.7; basins and diagrams: -cos 2.8t, 0.1, r = 0.8), *Duffing* x'' + x'/10 + x +
-3x^3/10 = cos 1.7t. The maps have restitutions from 0.5 to 0.999, orbits and chatter 0.9, thresholds 0.5."""
-READING = f"""The error is the median of the relative errors. A peer has its time as a multiple of that of singimpact,
-then its error; *missed* counts answers that are absent or off by more than a hundredth. Flights, derivatives and orbits
-are compared with ball arithmetic that shares no code with them, chatter limits and thresholds with 25 and 20 digits of
-singimpact itself. Timed calls have other states each time; a peer that is too slow for all has the first ones. Programs
-run in turn on one machine: ratios carry over, times do not. [All numbers](benchmarks.csv), with settings and quartiles.
-
-This page is written by `{COMMAND}`; `singimpact bench GROUP` measures more: chatter as close as wanted, series, new
-processes."""
+TEXTS = tomllib.loads((Path(__file__).parent / "data" / "pages.toml").read_text(encoding="utf-8"))
+COMMAND, STRESS_COMMAND = TEXTS["run-time"]["command"], TEXTS["stress"]["command"]
+ABOUT, READING = TEXTS["run-time"]["about"], TEXTS["run-time"]["reading"].format(command=COMMAND)
+STRESS_ABOUT = TEXTS["stress"]["about"].format(command=STRESS_COMMAND)
 PEERS = ("heyoka", "scipy", "numba")
 COLUMNS = ("case", "method", "setting", "microseconds", "ratio", "error", "wrong", "missed", "of")
-STRESS_COMMAND = "singimpact stress --format page -o docs/stress.md"
-STRESS_ABOUT = f"""# Stress: next to every bad place
-
-Each public numerical function is driven towards each place that is hard for it, geometrically, on both sides where
-there are two, and its error is measured against 60 digits: $v \\to 0$, $t \\to 0$, resonance, $r \\to 0$ and
-$r \\to 1$, a tangency ($a \\to 0$), a swan ($a' \\to 0$), the outline $P$, the zero set $Z$, phases far from zero,
-long flights. One unit is what rounding of the inputs alone must cost: $\\varepsilon$ times the size of the value
-and of what a relative change of each input does to it. Over 100 units is a failure, and the command ends with exit
-code 1; `inf` would be a wrong status.
-
-These are the results of one run of
-
-```sh
-{STRESS_COMMAND}
-```
-
-`--quick` takes fewer points, and a name or `--place` restricts it."""
 
 
 # The digest of the sources that `docs/benchmarks.md` and `docs/stress.md` were measured with. Each file counts by the

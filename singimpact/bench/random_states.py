@@ -47,15 +47,14 @@ class Draw:
 
 DRAW = Draw()
 REGIMES = ("generic", "low", "graze", "long")
+# Of each the number of its first case, what follows the names of its kinds, and its regimes.
+#
+# Plastic states are at rest on the wall: anywhere, where a_c presses, and just after and before a zero of a_c.
 FAMILIES = {
     "reference": (0, "", REGIMES),
     "between-walls": (10**9, " between walls", (*REGIMES, "narrow", "wide")),
     "plastic": (2 * 10**9, " with restitution 0", ("anywhere", "pressed", "rising", "falling")),
 }
-"""Of each the number of its first case, what follows the names of its kinds, and its regimes.
-
-Plastic states are at rest on the wall: anywhere, where a_c presses, and just after and before a zero of a_c.
-"""
 COLUMNS = ("status", "time_error", "velocity_error", "wrong", "tau", "v", "depth", "bound")
 
 

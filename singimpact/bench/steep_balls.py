@@ -70,18 +70,11 @@ def check(
     """
     total = len(columns_["status"])
     picked = np.random.default_rng([seed, total]).permutation(total)[: sizes[0]]
-    chosen = {name: column[picked].tolist() for name, column in columns_.items()}
+    names = ("case", "launch", "flight_time", "velocity", "true_time", "true_velocity")
+    chosen = zip(*(columns_[name][picked].tolist() for name in names), strict=True)
     states = [
-        Flown(
-            int(chosen["case"][index]),
-            int(chosen["launch"][index]),
-            chosen["flight_time"][index],
-            chosen["velocity"][index],
-            chosen["true_time"][index],
-            chosen["true_velocity"][index],
-            index < sizes[1],
-        )
-        for index in range(len(picked))
+        Flown(int(number), int(launch), time, velocity, true_time, true_velocity, index < sizes[1])
+        for index, (number, launch, time, velocity, true_time, true_velocity) in enumerate(chosen)
     ]
     table = sweep(partial(enclosed, seed), states, executor, output).reshape(-1, len(COLUMNS))
     return summary(

@@ -45,8 +45,7 @@ class DrawSettings:
 
 
 DRAW = DrawSettings()
-PARAMETRIC_FROM = 10**9
-"""The number of the first case of the parametric families."""
+PARAMETRIC_FROM = 10**9  # the number of the first case of the parametric families
 COLUMNS = (
     "family",
     "steepness",
@@ -93,7 +92,7 @@ class Case(NamedTuple):
     def motion(self) -> Motion:
         """The model as the truth flies it."""
         parameters = np.array([self.numbers[name] for name in NAMES])
-        layers = np.array(self.family.layers(self.numbers), dtype=float).reshape(-1, 5)
+        layers = np.array(self.family.layers_of(self.numbers), dtype=float).reshape(-1, 5)
         return Motion(_compiled(FAMILIES.index(self.family)), parameters, layers, self.clearance)
 
 
@@ -136,7 +135,7 @@ def drawn_of(family: Family, rng: Generator, count: int) -> Case:
     }
     v = np.clip(speed * 2.0 ** rng.uniform(-1, 1, count), 0.05, fast)
     tau = rng.uniform(0, 6 * pi / numbers["omega"], count)
-    for kind, centre, _, _, spacing in family.layers(numbers):
+    for kind, centre, _, _, spacing in family.layers_of(numbers):
         if kind == PHASE:  # launched ahead of the layer by less than a flight takes, about pi v/(1 + v)
             turns = rng.integers(1, 4, count)
             tau = centre + turns * spacing - rng.uniform(0, 0.8, count) * pi * v / (1 + v)

@@ -5,8 +5,10 @@ from typing import Any
 import click
 
 from singimpact.cli.model_options import model_options, take_model, wall_option
-from singimpact.cli.output import as_json_text, columns, picture_option, save, save_once, whole_option
+from singimpact.cli.output import as_json_text, choice_option, columns, picture_option, save, save_once, whole_option
 from singimpact.inputs import refuse
+
+LAYERS = ("for-ever", "first-chatter")
 
 
 @click.command()
@@ -19,13 +21,7 @@ from singimpact.inputs import refuse
 @whole_option("--size", 2, 10_000, "States a side.", 600)
 @whole_option("--impacts", 1, 10**7, "Of an orbit that does not settle.", 20_000)
 @whole_option("--workers", 1, 1024, "Processes.  [default: threads, one for each core]")
-@click.option(
-    "--layer",
-    type=click.Choice(["for-ever", "first-chatter"]),
-    default="for-ever",
-    show_default=True,
-    help="Draw the attractors, or the states whose first chatter completes.",
-)
+@choice_option("--layer", LAYERS, "Draw the attractors, or the states whose first chatter completes.", LAYERS[0])
 @click.option("--keep", metavar="FILE", help="Store results in this file (.npz or .zarr), and resume from it.")
 @picture_option(required=True)
 @click.option("--json", "as_json", is_flag=True, help="Give the shares of the classes as JSON.")
@@ -60,7 +56,7 @@ def command(
 
         with nullcontext() if workers is None else WorkerPool(workers) as pool:
             result = basins(model, tau, v, size, pool, keep, impacts, wall)
-        draw = draw_basins if layer == "for-ever" else draw_first_chatter
+        draw = draw_basins if layer == LAYERS[0] else draw_first_chatter
         values = result.as_dict()
         first = float(values["first_chatter_completes"].mean())
         return draw(result).figure, {"classes": values["classes"], "first_chatter_completes": first}

@@ -5,22 +5,31 @@ from __future__ import annotations
 import subprocess
 import sys
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from singimpact.cli.output import as_json_text, columns, emit, markdown, output_options, page_format, save, whole_option
+from singimpact.cli.output import (
+    as_json_text,
+    choice_option,
+    columns,
+    emit,
+    markdown,
+    output_options,
+    page_format,
+    save,
+    whole_option,
+)
 from singimpact.inputs import InputError, require_known
 from singimpact.progress import ProgressLine
 from singimpact.store import folder, write_text
 
-# The tables of `singimpact bench states --family steep`.
-
 if TYPE_CHECKING:
     import numpy as np
 
+    from singimpact.bench.measuring import Effort, Measured
     from singimpact.bench.steep_balls import Enclosures, Estimate
     from singimpact.bench.steep_digits import Pairs
     from singimpact.bench.steep_states import Row
@@ -30,19 +39,13 @@ TIMES = ("seconds", "true_seconds")
 COUNTS = ("states", "crossed", "wrong", "unresolved", "unresolved_steep", "undecided")
 
 
-@dataclass(frozen=True)
-class SteepStates:
-    """The output, as data and as text, and whether a flight is wrong."""
-
-    data: dict[str, Any]
-    text: str
-    wrong: bool
+# ---- the tables of `singimpact bench states --family steep`
 
 
 def steep_states(
     states: int, seed: int, workers: int | None, keep: str | None, balls: tuple[int, int, int], parametric: bool
-) -> SteepStates:
-    """Fly random steep states and some of them in balls.
+) -> tuple[dict[str, Any], str, bool]:
+    """Random steep states and some of them in balls, as data and as text, and whether a flight is wrong.
 
     Parameters
     ----------
@@ -71,17 +74,10 @@ def steep_states(
         _pairs(pairs),
         *(_lines(name, table) for name, table in listed.items()),
     ]
-    return SteepStates(
-        data,
-        "\n\n".join(table for table in parts if table),
-        _is_wrong(rows, enclosures) or bool(pairs.apart),
-    )
-
-
-def _is_wrong(rows: Sequence[Row], balls: Enclosures) -> bool:
-    """Whether a flight, an estimate of its error or the truth itself is wrong."""
-    below = any(part is not None and part.below for part in (balls.time, balls.velocity))
-    return any(row.wrong for row in rows) or bool(balls.disagree or balls.digits_wrong) or below
+    # a flight, an estimate of its error, or the truth itself
+    below = any(value is not None and value.below for value in (enclosures.time, enclosures.velocity))
+    wrong = enclosures.disagree or enclosures.digits_wrong or below or pairs.apart or any(row.wrong for row in rows)
+    return data, "\n\n".join(table for table in parts if table), bool(wrong)
 
 
 def _table(rows: Sequence[Row]) -> str:
@@ -203,10 +199,6 @@ def _lines(name: str, part: dict[str, Any]) -> str:
     return "\n".join([f"{name}: {part['states']}, of which {len(lines)}:", *lines])
 
 
-if TYPE_CHECKING:
-    from singimpact.bench.measuring import Effort, Measured
-
-
 @click.command()
 @click.argument("groups", metavar="[GROUP]...", nargs=-1)
 @click.option("--quick", is_flag=True, help="Fewer cases, states and rounds, within two minutes.")
@@ -216,12 +208,11 @@ if TYPE_CHECKING:
 @whole_option("--seed", 0, None, "Seed of the random states.", 0)
 @whole_option("--workers", 1, 1024, "Processes.  [default: one for each core]")
 @click.option("--keep", metavar="FILE.npz", help="Store results in this file, and resume from it.")
-@click.option(
+@choice_option(
     "--family",
-    type=click.Choice(["reference", "steep", "parametric", "between-walls", "plastic"]),
-    default="reference",
-    show_default=True,
-    help="Of random states: linear and cubic, steep layers, f with t, linear and cubic between two walls, or at rest.",
+    ["reference", "steep", "parametric", "between-walls", "plastic"],
+    "Of random states: linear and cubic, steep layers, f with t, linear and cubic between two walls, or at rest.",
+    "reference",
 )
 @whole_option("--balls", 0, None, "Steep states flown in balls.", 1000)
 @whole_option("--digits-checks", 0, None, "States in balls that are also flown with digits=20.", 100)
@@ -245,7 +236,7 @@ def command(
     as_json: bool,
     output: str | None,
 ) -> None:
-    """Measure CPU times and compare them with other tools. The groups are public, chatter, series, limit.
+    """Measure CPU times and compare them with other tools. The groups are public, chatter, series, ensemble, limit.
 
     The default is all but public, which has twelve calls beside loops of numba (with --quick without limit).
 
@@ -278,15 +269,18 @@ def command(
     wrong = _is_over(tables, store)
     if "states" in chosen and family in ("steep", "parametric"):
         sizes, parametric = (balls, digits_checks, digit_pairs), family == "parametric"
-        steep = steep_states(states, seed, workers, keep, sizes, parametric)
-        values["states"], wrong = steep.data, wrong or steep.wrong
-        texts.append(steep.text)
+        values["states"], text, found_wrong = steep_states(states, seed, workers, keep, sizes, parametric)
+        wrong |= found_wrong
+        texts.append(text)
     elif "states" in chosen:
         values["states"], text = _states(states, seed, workers, keep, family)
         wrong |= any(row["wrong"] for row in values["states"])
         texts.append(text)
     if directory is not None:
-        _draw(tables, directory)
+        from singimpact.bench.report import plotted
+
+        for table in tables:
+            save(plotted(table), directory / f"bench-{table.group}.png")
     emit(as_json_text(values) if as_json else "\n\n".join(texts), output)
     if wrong:
         sys.exit(1)
@@ -348,13 +342,6 @@ def _text(found: Measured, form: str) -> str:
         parts.append(NOTE)
     parts.append(reached(found))
     return "\n\n".join(part for part in parts if part)
-
-
-def _draw(found: list[Measured], place: Path) -> None:
-    from singimpact.bench.report import plotted
-
-    for each in found:
-        save(plotted(each), place / f"bench-{each.group}.png")
 
 
 def _states(

@@ -3,7 +3,7 @@
 import click
 
 from singimpact.cli.model_options import model_options, over_option, take_branches, take_model, take_orbits
-from singimpact.cli.output import as_json_text, picture_option, save, whole_option
+from singimpact.cli.output import as_json_text, choice_option, picture_option, save, whole_option
 
 
 @click.command()
@@ -22,11 +22,7 @@ from singimpact.cli.output import as_json_text, picture_option, save, whole_opti
     show_default=True,
     help="Last impacts of each that are drawn.",
 )
-@click.option(
-    "--direction",
-    type=click.Choice(["up", "down", "both"]),
-    help="Start each orbit from the last state of the one before.",
-)
+@choice_option("--direction", ["up", "down", "both"], "Start each orbit from the last state of the one before.")
 @click.option(
     "--follow",
     nargs=2,
@@ -67,13 +63,10 @@ def command(
     from singimpact.dynamics.bifurcation_diagram import bifurcation
     from singimpact.scenes.branch_picture import bifurcation_sheet
 
-    if direction is not None:
-        diagram = bifurcation(model, over, (low, high), points, start, impacts, last_events, direction, output=keep)
-    else:
-        with nullcontext() if workers is None else WorkerPool(workers) as pool:
-            diagram = bifurcation(
-                model, over, (low, high), points, start, impacts, last_events, executor=pool, output=keep
-            )
+    # in a direction each orbit begins where the one before ends: there is nothing to share out
+    with nullcontext() if workers is None or direction is not None else WorkerPool(workers) as pool:
+        sweeping = {"executor": pool, "output": keep}
+        diagram = bifurcation(model, over, (low, high), points, start, impacts, last_events, direction, **sweeping)
     branches = [
         branch for n, k in follow for branch in take_branches(take_orbits(model, (n, k), None), over, (low, high), 2000)
     ]

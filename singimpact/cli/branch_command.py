@@ -18,6 +18,7 @@ from singimpact.cli.model_options import (
 from singimpact.cli.output import (
     as_json_text,
     blank_axes,
+    choice_option,
     columns,
     csv_option,
     picture_option,
@@ -39,9 +40,7 @@ if TYPE_CHECKING:
 @click.option("--from", "low", metavar="NUMBER", help="Its least value.  [default: half of the model's value]")
 @click.option("--to", "high", metavar="NUMBER", help="Its largest value.  [default: 1.5 times the model's]")
 @whole_option("--points", 2, 1_000_000, "At most, each way.", 2000)
-@click.option(
-    "--height", type=click.Choice(["v", "phase"]), default="v", show_default=True, help="Vertical axis of the picture."
-)
+@choice_option("--height", ["v", "phase"], "Vertical axis of the picture.", "v")
 @csv_option("branch, parameter, states, multipliers, ...")
 @picture_option()
 @click.option("--json", "as_json", is_flag=True, help="Give points and events as JSON.")

@@ -11,8 +11,8 @@ from singimpact.inputs import InputError
 from singimpact.store import require_writable
 
 State = tuple[str, str] | None
+# Kinds of events of a branch: those that the checker knows, as a test compares, then those refused in a sentence.
 EVENTS = tuple(kind.name for kind in KINDS if kind.is_class)
-"""Kinds of events of a branch: those that the checker knows, as a test compares, then those refused in a sentence."""
 
 
 @click.command()

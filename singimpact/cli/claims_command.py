@@ -69,19 +69,17 @@ def _item(item: dict[str, Any]) -> str:
 @output_options
 def graph(svg: bool, as_json: bool, output: str | None) -> None:
     """The claims that each claim rests on, as text, as JSON or as an SVG picture."""
-    from singimpact.paper.claims import INDEX
+    from singimpact.paper.claims import INDEX, run, select
     from singimpact.paper.claims.index import as_svg, as_text
 
     if as_json:
-        emit(as_json_text({name: list(entry.rests_on) for name, entry in INDEX.items()}), output)
+        text = as_json_text({name: list(entry.rests_on) for name, entry in INDEX.items()})
+    elif svg:
+        verdicts = run(select(), cached=True)
+        text = as_svg(INDEX, {one.id: one.in_words if one.corrected else one.worth for one in verdicts})
     else:
-        emit(as_svg(INDEX, _kinds()) if svg else as_text(INDEX), output)
-
-
-def _kinds() -> dict[str, str]:
-    from singimpact.paper.claims import run, select
-
-    return {v.id: v.in_words if v.corrected else v.worth for v in run(select(), cached=True)}
+        text = as_text(INDEX)
+    emit(text, output)
 
 
 @command.command()

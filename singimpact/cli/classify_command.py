@@ -16,8 +16,7 @@ if TYPE_CHECKING:
     from singimpact.surface.outline_transitions import Transitions
 
 ORBIT = ("n", "k", "kind", "stable", "tau", "v")
-CHANGE = ("kind", "value", "n", "k", "below", "above")
-"""Of an orbit and of a change of orbits, in JSON."""
+CHANGE = ("kind", "value", "n", "k", "below", "above")  # of an orbit and of a change of orbits, in JSON
 SEEN = {None: "not decided", True: "yes", False: "no"}
 
 

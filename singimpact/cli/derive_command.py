@@ -71,10 +71,6 @@ def command(
         return
     if tau is not None or keep:
         raise InputError("--tau and --keep belong to --model")
-    _derivations(names, form, output)
-
-
-def _derivations(names: tuple[str, ...], form: str, output: str | None) -> None:
     from singimpact.paper.sections.stored_sections import kept_sections, marks_of
 
     derived = kept_sections(names)
@@ -83,13 +79,9 @@ def _derivations(names: tuple[str, ...], form: str, output: str | None) -> None:
 
 def _request(order: int | None, model: str | None, tau: str | None, keep: tuple[str, ...]) -> SeriesRequest:
     from singimpact.documents.series_documents import SeriesRequest
+    from singimpact.impact_oscillator import read_model
 
-    given = None
-    if model is not None:
-        from singimpact.impact_oscillator import read_model
-
-        given = read_model(model)
-    return SeriesRequest(6 if order is None else order, given, tau, keep)
+    return SeriesRequest(6 if order is None else order, None if model is None else read_model(model), tau, keep)
 
 
 def _series(request: SeriesRequest, form: str, output: str | None) -> None:

@@ -27,8 +27,7 @@ if TYPE_CHECKING:
     from singimpact.branches.event_curve import EventCurve
     from singimpact.branches.events import Event
 
-NEAR = 0.05
-"""An event that is nearer to a step of a curve than this part of the step is on the curve."""
+NEAR = 0.05  # an event that is nearer to a step of a curve than this part of the step is on the curve
 FOLLOWED = tuple(kind.name for kind in KINDS if kind.look is not None)
 
 

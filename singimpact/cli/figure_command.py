@@ -49,7 +49,7 @@ def command(which: str, output: str, kind: str, serif: bool, dark: bool, data: b
             start, target = process_time(), targets[done]
             title, claims = save_once(("figure", number, serif, dark), target, partial(_made, number, serif, dark), DPI)
             if data:
-                write_text(target.with_suffix(".json"), as_json_text(_data(number)) + "\n")
+                write_text(target.with_suffix(".json"), as_json_text(kept_picture(number).to_dict()) + "\n")
             written.append((number, title, claims, str(target), round(process_time() - start, 3)))
     if as_json:
         keys = ("figure", "title", "claims", "file", "seconds")
@@ -64,10 +64,6 @@ def _made(number: int | str, serif: bool, dark: bool) -> tuple[Any, Any]:
 
     picture = kept_picture(number)
     return drawn(picture, serif, dark), [picture.title, list(picture.claims)]
-
-
-def _data(number: int | str) -> Any:
-    return kept_picture(number).to_dict()
 
 
 def _targets(output: str, numbers: list[int | str], kind: str) -> list[Path]:

@@ -29,6 +29,7 @@ COMMANDS = {
     "sweep": "the last state of an orbit for many values of a parameter",
     "basins": "the attractor of each state of a grid, as a picture",
     "bifurcation": "settled orbits for many values of a parameter, as a picture",
+    "ensemble": "averages of many orbits through chatter and rest",
     "branch": "follow periodic orbits through grazes, folds and doublings",
     "border": "where a released orbit returns onto gamma, and the cascade beside it",
     "events": "curves of grazes, folds and doublings in two parameters",

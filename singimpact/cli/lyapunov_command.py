@@ -6,8 +6,8 @@ from singimpact.cli.model_options import model_options, take_model
 from singimpact.cli.output import as_json_text, emit, lines_of, output_options, state_options, whole_option
 from singimpact.status import Status
 
+# Of the result, in JSON.
 SHOWN = ("exponents", "error", "per_impact", "impacts", "time", "superstable", "status", "transient", "converged")
-"""Of the result, in JSON."""
 
 
 @click.command()

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from singimpact.cli.output import choice_option
 from singimpact.inputs import InputError
 
 if TYPE_CHECKING:
@@ -81,16 +82,13 @@ def _from_file(path: str, numbers: dict[str, str]) -> ImpactOscillator:
 
 def wall_option(function: Function) -> Function:
     """``--wall lower`` or ``--wall upper``."""
-    kinds = click.Choice(["lower", "upper"])
-    return click.option("--wall", type=kinds, help="Wall of the states, of a model with two walls.  [default: lower]")(
-        function
-    )
+    told = "Wall of the states, of a model with two walls.  [default: lower]"
+    return choice_option("--wall", ["lower", "upper"], told)(function)
 
 
 # Periodic orbits, and the branches through them.
 
-SAME = 1e-6
-"""States that differ by less, of a period and of their velocity, are those of one orbit."""
+SAME = 1e-6  # states that differ by less, of a period and of their velocity, are those of one orbit
 
 
 def orbit_options(function: Function) -> Function:

@@ -37,6 +37,14 @@ def whole_option(
     return click.option(name, type=kind, default=default, show_default=default is not None, help=told)
 
 
+def choice_option(
+    name: str, kinds: Sequence[str], told: str, default: str | None = None
+) -> Callable[[Function], Function]:
+    """An option that is one of some words."""
+    kind = click.Choice(kinds)
+    return click.option(name, type=kind, default=default, show_default=default is not None, help=told)
+
+
 def picture_option(
     told: str = "The picture: .png, .pdf or .svg.", required: bool = False
 ) -> Callable[[Function], Function]:

@@ -3,7 +3,6 @@
 import os
 import shutil
 import sys
-from typing import Any
 
 import click
 
@@ -51,28 +50,19 @@ def command(
     verdicts = verify(ids or None, beyond=beyond)
     if certificates is not None:
         verdicts.save_certificates(certificates)
+    # without a terminal lines are as long as they are, and have no colours
+    width = shutil.get_terminal_size().columns if output is None and sys.stdout.isatty() else None
     if as_json:
         text = as_json_text(verdicts.as_dict())
     elif output is not None and output.endswith((".html", ".htm")):
         text = verdicts.html()
     elif whole or ids or beyond or output is not None:
-        text = verdicts.text(_width(output), _painter(output))
+        text = verdicts.text() if width is None else verdicts.text(width, _painted)
     else:
-        text = f"{verdicts.screen(_width(output))}\n\n{MORE}"
+        text = f"{verdicts.screen(width)}\n\n{MORE}"
     emit(text, output)
     ctx.exit(verdicts.exit_code)
 
 
-def _seen(output: str | None) -> bool:
-    return output is None and sys.stdout.isatty()
-
-
-def _width(output: str | None) -> int | None:
-    """The terminal's width; None where lines may be as long as they are."""
-    return shutil.get_terminal_size().columns if _seen(output) else None
-
-
-def _painter(output: str | None) -> Any:
-    if not _seen(output) or "NO_COLOR" in os.environ:
-        return lambda text, kind: text  # noqa: ARG005
-    return lambda text, kind: click.style(text, fg=COLOURS.get(kind))
+def _painted(text: str, kind: str) -> str:
+    return text if "NO_COLOR" in os.environ else click.style(text, fg=COLOURS.get(kind))

@@ -22,11 +22,11 @@ from singimpact.flights.derivative import derivative
 from singimpact.flights.orbits import signed_iterate
 from singimpact.oscillator.model import Oscillator
 
+# Classes of states that reach no periodic orbit: not settled, chatter that completes, no period and neighbours that
+# separate, proved never to return, no impact before the horizon, a flight that is unresolved, decided by rounding;
+# without a clock a cycle that does not touch the wall, a rest off the wall, and closed orbits beside closed orbits;
+# with a forcing that never repeats a response to which neighbours come, and one with rests again and again
 OTHER, CHATTER, CHAOS, GONE, AWAY, STUCK, SENSITIVE, CYCLE, STILL, LEVEL, RESPONSE, RESTING = range(12)
-"""Classes of states that reach no periodic orbit: not settled, chatter that completes, no period and neighbours that
-separate, proved never to return, no impact before the horizon, a flight that is unresolved, decided by rounding;
-without a clock a cycle that does not touch the wall, a rest off the wall, and closed orbits beside closed orbits;
-with a forcing that never repeats a response to which neighbours come, and one with rests again and again."""
 PLACES = 1000  # a class (n, k) is coded n * PLACES + k
 
 

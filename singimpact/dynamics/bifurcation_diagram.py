@@ -43,8 +43,8 @@ from singimpact.oscillator.period import moving_in_time, oscillates
 from singimpact.result import Result
 from singimpact.surface.curve import window_ends
 
+# Total of impacts below which no processes are started: about 5 s of work
 FEW = 200_000
-"""Total of impacts below which no processes are started: about 5 s of work."""
 
 
 @dataclass(frozen=True)

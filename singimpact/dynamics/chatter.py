@@ -36,6 +36,7 @@ from singimpact.result import Result, in_words
 from singimpact.status import Cause, Status, status_array
 from singimpact.theory.completion import by_velocity
 
+# Statuses and causes of the codes of `kernels.chatter`
 ENDED = {
     COMPLETED: (Status.complete, Cause.decided),
     LIFTED: (Status.lifts_off, Cause.decided),
@@ -43,7 +44,6 @@ ENDED = {
     TOO_WIDE: (Status.unresolved, Cause.overflow),
     REPEATS: (Status.unresolved, Cause.settled),
 }
-"""Statuses and causes of the codes of `kernels.chatter`."""
 
 
 @dataclass(frozen=True)

@@ -30,9 +30,9 @@ class GrowthSettings:
 
 
 SETTINGS = GrowthSettings()
+# Ends of a piece: that of its fundamental piece, or an earlier cut; a discontinuity; the edge of the window that is
+# followed; a point without an image
 NATURAL, TORN, LEFT, LOST = "", "torn", "left", "lost"
-"""Ends of a piece: that of its fundamental piece, or an earlier cut; a discontinuity; the edge of the window that is
-followed; a point without an image."""
 
 
 @dataclass(frozen=True)

@@ -18,8 +18,8 @@ from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import at_wall
 
 ORDER = 22
+# Lift-offs whose phases differ by at most this, relative, are one: both are doubles next to one zero of a_c
 SAME = 4 * EPSILON
-"""Lift-offs whose phases differ by at most this, relative, are one: both are doubles next to one zero of a_c."""
 
 
 def release(osc: Oscillator, tau: float, horizon: float | None = None) -> float:

@@ -1,4 +1,4 @@
-"""Lyapunov exponents of an orbit of the impact map, from D G along it.
+"""Lyapunov exponents of orbits of the impact map, from D G along them: of one orbit, of many, of families.
 
     det D G = -rho'(u) (v/|u|) exp(-int f_v dt) = r^2 (v/v') exp(-int f_v dt)   for rho = -r u
 
@@ -7,38 +7,37 @@ the entries of D G keep too few digits of a strong contraction. D G comes with t
 variational equation of others.
 """
 
-from dataclasses import dataclass, field
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.derivatives import derivative as derivative_of
+from singimpact.algebra.expressions import names_in
 from singimpact.algebra.numbers import EPSILON, Array, compare
-from singimpact.dynamics.attractors import apart
-from singimpact.dynamics.chatter import ENDING, chatter_limit
-from singimpact.dynamics.lift_off import periods_between, release
-from singimpact.dynamics.phases import phases_of
+from singimpact.dynamics.families import OscillatorFamily, in_parts
+from singimpact.dynamics.lives import Lives, Single, Stretch
 from singimpact.dynamics.remaining import chatter_completes
-from singimpact.flights.compiled_model import compiled_model
 from singimpact.flights.derivative import derivative, log_determinant
-from singimpact.flights.impact_map import impact_map
-from singimpact.flights.orbits import Ends, Segment, iterates, orbit_segment
-from singimpact.flights.rebound_law import rebound_slope
-from singimpact.flights.states import States
-from singimpact.flights.walls import wall_codes
+from singimpact.flights.response import with_bend
 from singimpact.inputs import InputError, checked_keywords, refuse, shown, takes_two_walls, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.result import Result
-from singimpact.status import Status
+from singimpact.status import Status, status_array
 
 
 @dataclass(frozen=True)
 class LyapunovSettings:
     """Settings of the sums of growth along an orbit."""
 
-    # impacts of one call into compiled code; their slopes take 6 MB
+    # impacts of one call into compiled code for all orbits together; their slopes take 6 MB
     block: int = 65_536
-    # stretches of one block whose products are formed side by side
+    # stretches of one block of an orbit whose products are formed side by side, and impacts of one at least
     stretches: int = 256
+    least: int = 16
     # groups of stretches whose spread gives the standard error
     groups: int = 32
     # impacts of a transient at most: a chaotic one of x'' + x = cos 3.3t, c = 0.03, r = 0.95 lasts 3800 (median)
@@ -65,12 +64,12 @@ SMALLEST = float(np.finfo(float).tiny)
 
 @dataclass(frozen=True, eq=False)
 class Lyapunov(Result):
-    """Both Lyapunov exponents of an orbit.
+    """Both Lyapunov exponents of an orbit, or of each of many.
 
     Parameters
     ----------
-    exponents : per unit of time, the larger first, shape (2,); -inf where the orbit comes to rest again and again, for
-        what follows a rest does not depend on what was before; nan where no impact was flown.
+    exponents : per unit of time, the larger first, of shape (..., 2); -inf where the orbit comes to rest again and
+        again, for what follows a rest does not depend on what was before; nan where no impact was flown.
     error : standard errors of `exponents`, from the spread of groups of impacts, and their rounding; nan with fewer
         than two groups.
     impacts, time : how many impacts the exponents are taken over, and how long they last.
@@ -85,14 +84,14 @@ class Lyapunov(Result):
 
     exponents: Array
     error: Array
-    impacts: int
-    time: float
-    start: tuple[float, float]
-    last: tuple[float, float]
+    impacts: Any
+    time: Any
+    start: tuple[Any, Any]
+    last: tuple[Any, Any]
     status: Any
-    superstable: bool
-    transient: int = 0
-    converged: bool = True
+    superstable: Any
+    transient: Any = 0
+    converged: Any = True
 
     def as_dict(self) -> dict[str, Any]:
         """The fields, and the exponents per impact."""
@@ -106,29 +105,42 @@ class Lyapunov(Result):
     @property
     def per_impact(self) -> Array:
         """The exponents per impact."""
-        return self.exponents * (self.time / self.impacts if self.impacts else 1.0)
+        with np.errstate(all="ignore"):
+            ratio = np.where(np.asarray(self.impacts) > 0, np.divide(self.time, self.impacts), 1.0)
+        return np.asarray(self.exponents * ratio[..., None])
 
     def __repr__(self) -> str:
+        if np.ndim(self.impacts):
+            chaotic = self.exponents[..., 0] > 3 * self.error[..., 0]
+            shares = f"{100 * np.mean(chaotic):.3g} % chaotic, {100 * np.mean(self.superstable):.3g} % superstable"
+            return f"Lyapunov({np.size(self.impacts)} orbits: {shares})"
         if self.superstable:
             return f"Lyapunov(superstable: the orbit comes to rest, {self.impacts} impacts)"
-        each = ", ".join(f"{value:.6g} +- {error:.2g}" for value, error in zip(self.exponents, self.error, strict=True))
+        item = ", ".join(f"{value:.6g} +- {error:.2g}" for value, error in zip(self.exponents, self.error, strict=True))
         ended = "" if self.status == Status.hit else f", ended by {Status(int(self.status)).name}"
         doubt = "" if self.converged else ", not converged: the halves differ, give more impacts"
-        return f"Lyapunov({each} per unit of time, {self.impacts} impacts after {self.transient}{ended}{doubt})"
+        return f"Lyapunov({item} per unit of time, {self.impacts} impacts after {self.transient}{ended}{doubt})"
 
 
 @checked_keywords
 @takes_two_walls
 def lyapunov(
-    osc: Oscillator, tau: Any, v: Any, impacts: int = 10_000, *, transient: int | None = None, wall: Any = None
+    osc: Oscillator | OscillatorFamily,
+    tau: object,
+    v: object,
+    impacts: int = 10_000,
+    *,
+    transient: int | None = None,
+    wall: object = None,
 ) -> Lyapunov:
-    """The Lyapunov exponents of the orbit of a state.
+    """The Lyapunov exponents of the orbit of a state, or of many.
 
     Parameters
     ----------
-    osc : the model. tau, v : the state, v >= 0. impacts : flown, with D G, after `transient` others. Without a
-        transient the orbit is followed until it repeats, at most 20 000 impacts, then flown anew while both halves
-        differ. wall : of the state, of a model with two walls: "lower" (also without it) or "upper".
+    osc : the model, or a family (`osc.over`). tau, v : states, v >= 0, which broadcast, also with the members of a
+        family. impacts : flown, with D G, after `transient` others. Without a transient an orbit is followed until it
+        repeats, at most 20 000 impacts, then flown anew while both halves differ. wall : of the states, of a model with
+        two walls: "lower" (also without it) or "upper".
 
     Returns
     -------
@@ -146,238 +158,289 @@ def lyapunov(
     >>> found.exponents.round(6).tolist()  # ln(1/2) an impact, every two periods
     [-0.220636, -0.220636]
     """
-    if not isinstance(osc, Oscillator):
+    if not isinstance(osc, Oscillator | OscillatorFamily):
         raise refuse("osc", osc, "an ImpactOscillator")
-    states = States.read(tau, v).in_period(osc)
-    if states.shape:
-        raise InputError(f"tau and v have shape {states.shape}: an orbit starts from one state, give two numbers")
     flown = whole("impacts", impacts, 1, 10**8)
-    codes = wall_codes(osc, wall)
-    if codes.shape:
-        raise refuse("wall", wall, "one wall: an orbit starts from one state")
-    run = _Run(osc, states, int(codes))
+    before = None if transient is None else whole("transient", transient, 0, 10**8)
+    item = lambda *states: exponents_of_states(states, flown, before)  # noqa: E731
+    return _shaped(in_parts(osc, (tau, v, wall), item)[0])
+
+
+def exponents_of_states(states: tuple[Any, ...], impacts: int, transient: int | None) -> tuple[Array]:
+    """The fields of `Lyapunov` for some orbits, one row each; states : as `Lives` takes them."""
+    run = _Run(Lives(*states))
     if transient is None:
-        return run.settled(flown)
-    run.fly(whole("transient", transient, 0, 10**8), keep=False)
+        return (run.settled(impacts),)
+    run.fly(np.full(run.size, transient), keep=False)
     run.begin()
-    run.fly(flown, keep=True)
-    return run.result()
+    run.fly(np.full(run.size, impacts), keep=True)
+    return (run.table(),)
 
 
-@dataclass
-class _Sums:
-    """Growth over stretches of impacts: impacts, time, ln of the first diagonal entry of R, ln |det|."""
+def _shaped(table: Array) -> Lyapunov:
+    """Rows of fields as a result; of one row as numbers."""
+    columns = np.moveaxis(table, -1, 0)
+    impacts, status, over, before, converged = (
+        columns[slot].astype(kind)[()]
+        for slot, kind in ((4, np.int64), (10, np.int8), (11, bool), (12, np.int64), (13, bool))
+    )
+    start, last = (columns[6][()], columns[7][()]), (columns[8][()], columns[9][()])
+    status = status_array(status)
+    return Lyapunov(
+        table[..., :2], table[..., 2:4], impacts, columns[5][()], start, last, status, over, before, converged
+    )
 
-    direction: Array = field(default_factory=lambda: np.array([1.0, 0.0]))
-    rows: list[Array] = field(default_factory=list)
 
-    def add(self, matrices: Array, times: Array, areas: Array) -> None:
-        """D G of impacts, shape (n, 2, 2), their flight times, and ln |det D G|."""
-        n = times.size
-        length = -(-n // SETTINGS.stretches)
-        count = -(-n // length)
-        padded = np.broadcast_to(np.eye(2), (count * length, 2, 2)).copy()
-        padded[:n] = matrices
-        # entry by entry, a row of stretches each: products of 2 x 2 matrices as sums of arrays
-        a, b, c, d = (np.ascontiguousarray(padded[:, i, j].reshape(count, length).T) for i in (0, 1) for j in (0, 1))
-        p, q, r, s, size = np.ones(count), np.zeros(count), np.zeros(count), np.ones(count), np.zeros(count)
-        for k in range(length):
-            p, q, r, s = a[k] * p + b[k] * r, a[k] * q + b[k] * s, c[k] * p + d[k] * r, c[k] * q + d[k] * s
-            scale = np.sqrt(p * p + q * q + r * r + s * s)
-            p, q, r, s = p / scale, q / scale, r / scale, s / scale
-            size += np.log(scale)
-        starts = np.arange(0, n, length)
-        lasting, shrunk = np.add.reduceat(times, starts), np.add.reduceat(areas, starts)
-        for k, product in enumerate(np.stack([p, q, r, s], axis=1).reshape(-1, 2, 2)):
-            moved = product @ self.direction
-            length_of = max(float(np.hypot(*moved)), SMALLEST)  # 0 where roundings cancel
-            self.direction = moved / length_of
-            row = min(length, n - starts[k]), lasting[k], size[k] + np.log(length_of), shrunk[k]
-            self.rows.append(np.array(row))
+class Growth:
+    """The growth of a vector along each of some orbits.
+
+    Attributes
+    ----------
+    rows : of each stretch (time, ln of the growth, ln of the area, impacts), shape (4, orbits).
+    """
+
+    def __init__(self, lives: Lives) -> None:
+        self.lives = lives
+        self.vector = np.tile([[1.0], [0.0]], lives.which.size)
+        self.rows: list[Array] = []
+
+    def begin(self, chosen: Array) -> None:
+        """Sums of some orbits begin anew, with the vector that they have."""
+        for before in self.rows:
+            before[:, chosen] = 0.0
+
+    def add(self, stretch: Stretch) -> None:
+        """Take in a stretch; sums begin anew where an orbit has rested."""
+        at, real = stretch.chosen, stretch.real
+        if real.any():
+            slopes, areas = self._derivatives(stretch)
+            count = real.shape[1]
+            pieces = max(1, min(SETTINGS.stretches, count // SETTINGS.least))
+            length = -(-count // pieces)
+            pieces = -(-count // length)
+            matrices = np.zeros((2, 2, at.size, pieces * length))
+            matrices[0, 0], matrices[1, 1] = 1.0, 1.0
+            matrices[:, :, :, :count][:, :, real] = slopes
+            columns = np.zeros((3, at.size, pieces * length))
+            columns[:, :, :count][:, real] = np.stack([stretch.rows[real][:, 2], areas, np.ones(areas.size)])
+            sums = columns.reshape(3, at.size, pieces, length).sum(axis=-1)
+            for piece, (product, size) in enumerate(zip(*_products(matrices, pieces, length), strict=True)):
+                moved = np.einsum("ijn,jn->in", product, self.vector[:, at])
+                grown = np.maximum(np.hypot(*moved), SMALLEST)  # 0 where roundings cancel
+                self.vector[:, at] = moved / grown
+                row = np.zeros((4, self.lives.which.size))
+                row[:, at] = sums[0, :, piece], size + np.log(grown), sums[1, :, piece], sums[2, :, piece]
+                self.rows.append(row)
+        for single in stretch.singles:
+            self._single(single)
+        self.begin(at[stretch.rested])
+
+    def _single(self, single: Single) -> None:
+        """One flight that the impact map has decided."""
+        index, step = single.orbit, single.step
+        if step.status != Status.hit:
+            return
+        here = self.lives.members.side(int(self.lives.which[index]), single.wall)
+        one = [np.array([float(item)]) for item in (single.phase, single.v, step.flight_time, step.velocity)]
+        moved = derivative(here, single.phase, single.v).matrix @ self.vector[:, index]
+        grown = max(float(np.hypot(*moved)), SMALLEST)
+        self.vector[:, index] = moved / grown
+        row = np.zeros((4, self.lives.which.size))
+        row[:, index] = one[2][0], np.log(grown), log_determinant(here, *one)[0], 1.0
+        self.rows.append(row)
+
+    @cached_property
+    def _slopes_of_rho(self) -> list[Any]:
+        """r at each wall, of the members; or rho' as a tree in v."""
+        found: list[Any] = []
+        for pressure in self.lives.pressures:
+            law = pressure.osc.rho(self.lives.members.letters)
+            moving = "v" in names_in(pressure.osc.restitution)
+            found.append(derivative_of(law, "v") if moving else pressure.slopes)
+        return found
+
+    def _rebound_slope(self, which: Array, velocity: Array) -> Array:
+        """rho' at velocities, and that of the law of the upper wall, turned, at velocities > 0."""
+        result = np.empty(velocity.shape)
+        for wall, law in enumerate(self._slopes_of_rho):
+            at = (velocity > 0) == bool(wall)
+            if isinstance(law, np.ndarray):
+                slope = -law[which[at]]
+            else:
+                letters = {name: values[which[at]] for name, values in self.lives.members.over.items()}
+                slope = self.lives.pressures[wall].valued(law, {**letters, "v": -np.abs(velocity[at])})
+            result[at] = -slope if wall else slope
+        return result
+
+    def _derivatives(self, stretch: Stretch) -> tuple[Array, Array]:
+        """D G of the impacts of a stretch, shape (2, 2, n), and ln |det D G|."""
+        lives, members, real = self.lives, self.lives.members, stretch.real
+        phase, _, v, walls = stretch.begun
+        turned = np.broadcast_to((walls == 1)[:, None], real.shape)[real]
+        other = (stretch.rows[:, :-1, 11] == 1) & real[:, :-1]
+        which = np.broadcast_to(lives.which[stretch.chosen][:, None], real.shape)[real]
+        tau = np.column_stack([phase, phase[:, None] + stretch.rows[:, :-1, 0]])[real]
+        speed = np.column_stack([v, stretch.rows[:, :-1, 1]])[real]
+        sides = np.column_stack([walls, walls[:, None] ^ other])[real].astype(np.int8)
+        rows, sign = stretch.rows[real], np.where(turned, -1.0, 1.0)
+        time, velocity = rows[:, 2], sign * rows[:, 3]
+        if members.linear:
+            by_tau, by_v = rows[:, 7:9].T
+            speed_by_tau, speed_by_v = sign * rows[:, 9:11].T
+        else:
+            parts = members.variations(which, (tau, speed, sides), time)
+            seen = np.where(sides == 1, -1.0, 1.0)  # in the frame of the launch
+            answer = with_bend(parts, seen * velocity, seen * self._bend(which, tau + time, velocity))
+            by_tau, by_v = answer.time_by_tau, answer.time_by_v
+            speed_by_tau, speed_by_v = seen * answer.velocity_by_tau, seen * answer.velocity_by_v
+        slope = self._rebound_slope(which, velocity)
+        matrices = np.array([[1 + by_tau, by_v], [slope * speed_by_tau, slope * speed_by_v]])
+        damping = derivative_of(members.osc.force(members.letters), "xdot")
+        if not names_in(damping) & {"x", "xdot", "t"}:
+            loss = lives.pressures[0].values(damping, which, time) * time
+            with np.errstate(all="ignore"):
+                return matrices, np.log(np.abs(slope) * speed / np.abs(velocity)) - loss
+        areas = np.empty(which.size)
+        for member in np.unique(which).tolist():
+            at = which == member
+            wall = sides[at] if members.two_walls else None
+            areas[at] = log_determinant(members.member(member), tau[at], speed[at], time[at], velocity[at], wall)
+        return matrices, areas
+
+    def _bend(self, which: Array, at: Array, velocity: Array) -> Array:
+        """x'' at hits, in the frame of the model."""
+        lives = self.lives
+        osc, letters = lives.members.osc, lives.members.letters
+        state = {name: values[which] for name, values in lives.members.over.items()}
+        state |= {"x": lives.places(which, velocity > 0), "xdot": velocity, "t": at}
+        pressure = lives.pressures[0]
+        return pressure.valued(osc.forcing(letters), state) - pressure.valued(osc.force(letters), state)
+
+
+def _products(matrices: Array, pieces: int, length: int) -> tuple[Array, Array]:
+    """Products of the matrices of each piece of an orbit, shape (pieces, 2, 2, n), to a size whose ln is the second."""
+    a, b, c, d = matrices.reshape(4, -1, pieces, length)
+    count = a.shape[0]
+    p, q, r, s = (np.full((count, pieces), one) for one in (1.0, 0.0, 0.0, 1.0))
+    size = np.zeros((count, pieces))
+    for k in range(length):
+        e, f, g, h = a[..., k], b[..., k], c[..., k], d[..., k]
+        p, q, r, s = e * p + f * r, e * q + f * s, g * p + h * r, g * q + h * s
+        scale = np.maximum(np.sqrt(p * p + q * q + r * r + s * s), SMALLEST)
+        p, q, r, s = p / scale, q / scale, r / scale, s / scale
+        size += np.log(scale)
+    return np.array([[p, q], [r, s]]).transpose(3, 0, 1, 2), size.T
 
 
 class _Run:
-    """An orbit that is being flown, and the growth along it."""
+    """Orbits that are being flown, and the growth along them."""
 
-    def __init__(self, osc: Oscillator, states: States, wall: int) -> None:
-        self.osc, self.given, self.wall = osc, states.given(0), wall
-        self.models = (osc,) if osc.upper is None else (osc, osc.mirrored)
-        self.tau, self.v = float(states.tau[0]), float(states.v[0])
-        self.before = 0  # impacts of the transient
-        self.first, self.lifted, self.status = True, list[tuple[float, int]](), Status.hit
-        # one r = 1 is enough: such a wall has no chatter that ends
-        self.near = 0.0 if any(compare(model.slope_at_rest(), 1) == 0 for model in self.models) else ENDING.near
-        if not self.near and any(chatter_completes(model) for model in self.models):
+    def __init__(self, lives: Lives) -> None:
+        self.lives, self.size = lives, lives.which.size
+        osc = lives.members.osc
+        sides = [pressure.osc for pressure in lives.pressures]
+        elastic = any(compare(side.slope_at_rest(), 1) == 0 for side in sides) and not lives.members.over
+        if elastic and any(chatter_completes(side) for side in sides):
             raise InputError(
                 f"restitution = {shown(str(osc.restitution))} is not accepted: exponents need r < 1, or r = 1 without "
                 "the power q < 1 of the speed by which chatter comes to rest"
             )
+        self.growth, self.before, self.start = Growth(lives), np.zeros(self.size, int), np.zeros((2, self.size))
         self.begin()
 
+    def begin(self, chosen: Any = slice(None)) -> None:
+        """Sums from the present states on."""
+        self.start[:, chosen] = self.lives.time(chosen), self.lives.v[chosen]
+        self.growth.begin(np.arange(self.size)[chosen])
+
     @property
-    def here(self) -> Oscillator:
-        """The model whose lower wall is the wall of the state."""
-        return self.models[self.wall]
+    def over(self) -> Array:
+        """Orbits that rest again and again, or for ever."""
+        lives = self.lives
+        often = np.isnan(lives.members.period[lives.which]) & (lives.rests >= SETTINGS.rests)
+        return np.asarray((lives.cycle > 0) | (lives.status == Status.sticks) | often)
 
-    def begin(self, direction: Array | None = None) -> None:
-        """Sums from the present state on."""
-        self.sums = _Sums() if direction is None else _Sums(direction)
-        self.start, self.flown = (self.tau, self.v), 0
+    def fly(self, most: Array, keep: bool) -> Stretch | None:
+        """So many impacts of each orbit, fewer where it ends or is seen to come to rest again and again."""
+        lives, done, stretch = self.lives, np.zeros(self.size, np.int64), None
+        while (going := np.flatnonzero((done < most) & (lives.status == 0) & ~self.over)).size:
+            before = lives.flown[going].copy()
+            block = max(SETTINGS.block // going.size, SETTINGS.period)
+            stretch = lives.advance(np.minimum(block, most[going] - done[going]), going)
+            done[going] += np.maximum(lives.flown[going] - before, 1)
+            if keep:
+                self.growth.add(stretch)
+            for single in stretch.singles:
+                if single.step.status == Status.graze:  # D G has no limit there
+                    lives.status[single.orbit] = Status.graze
+            self.begin(stretch.chosen[stretch.rested])
+        return stretch
 
-    def settled(self, impacts: int) -> Lyapunov:
-        """The exponents of what the orbit settles to."""
-        block = SETTINGS.look
-        while self.before < SETTINGS.transient and self.status == Status.hit and not self._repeats():
-            block = min(block, SETTINGS.transient - self.before)
-            self.fly(block, keep=False)
-            self.before, block = self.before + block, 2 * block
+    def settled(self, impacts: int) -> Array:
+        """The exponents of what orbits settle to."""
+        block, open_ = SETTINGS.look, np.ones(self.size, bool)
+        while open_.any():
+            count = np.where(open_, np.minimum(block, SETTINGS.transient - self.before), 0)
+            stretch = self.fly(count, keep=False)
+            self.before += count
+            open_ &= (self.before < SETTINGS.transient) & (self.lives.status == 0) & ~self.over
+            if stretch is not None:
+                open_[stretch.chosen[_repeats(self.lives, stretch)]] = False
+            block *= 2
+        result, open_ = np.zeros((self.size, 14)), np.ones(self.size, bool)
         for _ in range(SETTINGS.again):
-            self.begin()
-            self.fly(min(SETTINGS.turn, impacts), keep=True)
-            if self.status == Status.hit:
-                self.begin(self.sums.direction)
-                self.fly(impacts, keep=True)
-            result = self.result()
-            if result.converged or self.status != Status.hit:
-                return result
-            self.before += impacts
+            self.begin(open_)
+            self.fly(np.where(open_, min(SETTINGS.turn, impacts), 0), keep=True)
+            self.begin(open_ & (self.lives.status == 0) & ~self.over)
+            self.fly(np.where(open_, impacts, 0), keep=True)
+            result[open_] = self.table()[open_]
+            open_ &= (result[:, 13] == 0) & (self.lives.status == 0) & ~self.over
+            self.before += np.where(open_, impacts, 0)
+            if not open_.any():
+                break
         return result
 
-    def _repeats(self) -> bool:
-        """Whether the state comes back after some impacts."""
-        plastic = self.osc.plastic
-        if not (self.v > 0 or plastic) or not self.before:
-            return False
-        ahead: Ends | Segment
-        if plastic:
-            ahead = iterates(self.osc, self.tau, self.v, SETTINGS.period, True)
-        else:
-            ahead = orbit_segment(self.osc, self.tau, self.v, SETTINGS.period, wall=self.wall)
-        last = slice(-SETTINGS.period, None)
-        away = apart((ahead.tau[last], ahead.v[last]), (self.tau, self.v), phases_of(self.osc), self.v or 1.0)
-        same = True if ahead.wall is None else ahead.wall[last] == self.wall
-        return bool(((away < SETTINGS.close) & same).any())
-
-    def fly(self, most: int, keep: bool) -> None:
-        """So many impacts, fewer where the orbit ends or is seen to come to rest again and again."""
-        done, near, block = 0, self.near, SETTINGS.block
-        while done < most and self.status == Status.hit:
-            if self.osc.plastic:
-                done += self._landed(min(most - done, SETTINGS.look), keep)
-                continue
-            if not self.v > 0:
-                done += self._mapped(keep)
-                continue
-            segment = orbit_segment(self.osc, self.tau, self.v, min(most - done, block), near, self.wall)
-            done += self._flew(segment, keep)
-            near, block = self.near, SETTINGS.block
-            if done == most:
-                return
-            if segment.short:
-                end = chatter_limit(self.here, self.tau, self.v)
-                if end.status == Status.complete:
-                    self._rest(float(end.tau))
-                else:  # contact is lost before the impacts accumulate: they are flown
-                    near, block = 0.0, int(end.impacts) + 1
-            elif segment.status:
-                done += self._mapped(keep)
-
-    def _flew(self, segment: Segment, keep: bool) -> int:
-        count = segment.tau.size
-        if not count:
-            return 0
-        launches = np.append(self.tau, segment.tau[:-1]), np.append(self.v, segment.v[:-1])
-        walls = np.append(np.int8(self.wall), segment.wall[:-1])
-        self.tau, self.v, self.first = float(segment.tau[-1]), float(segment.v[-1]), False
-        self.wall = int(segment.wall[-1])
-        if not keep:
-            return count
-        shrunk = log_determinant(self.osc, *launches, segment.flight_time, segment.velocity, walls)
-        self.sums.add(_matrices(self.osc, segment, *launches, walls), segment.flight_time, shrunk)
-        self.flown += count
-        return count
-
-    def _landed(self, most: int, keep: bool) -> int:
-        """Impacts that leave no velocity, up to one after which the mass rests."""
-        tau, v = self.given if self.first else (self.tau, self.v)
-        rows = iterates(self.osc, tau, v, most, True)
-        count = int(np.count_nonzero(np.diff(rows.tau)))
-        launches, self.first = (rows.tau[:count], rows.v[:count]), False
-        self.tau, self.v = float(rows.tau[count]), float(rows.v[count])
-        if keep and count:
-            self.sums.add(
-                derivative(self.osc, *launches).matrix, np.diff(rows.tau[: count + 1]), np.full(count, -np.inf)
-            )
-            self.flown += count
-        if rows.status == Status.sticks:
-            self._rest(self.tau)
-            if self.status == Status.hit:  # the impacts after a lift-off do not depend on the orbit before
-                self.begin()
-        elif rows.status:
-            self.status = Status(int(rows.status))
-        return count
-
-    def _mapped(self, keep: bool) -> int:
-        """One flight by the impact map, which decides what an orbit leaves open: a rest, a flight near a graze."""
-        launch_state = self.given if self.first else (self.tau, self.v)
-        here = self.here
-        step = impact_map(here, *launch_state)
-        self.first = False
-        if step.status == Status.sticks:
-            self._rest(self.tau)
-            return 0
-        self.status = Status(int(step.status))
-        if self.status != Status.hit:
-            return 1
-        rest, before = self.v == 0, (self.tau, self.v)
-        self.tau, self.v = float(step.tau), float(step.v)
-        self.wall ^= 0 if step.wall is None else int(step.wall)
-        if rest:  # the impact after a lift-off does not depend on the orbit before: the sums begin there
-            self.begin()
-        elif keep:
-            launch = np.array([before[0]]), np.array([before[1]])
-            flight = np.array([float(step.flight_time)]), np.array([float(step.velocity)])
-            shrunk = log_determinant(here, *launch, *flight)
-            self.sums.add(derivative(here, *before).matrix[None], flight[0], shrunk)
-            self.flown += 1
-        return 1
-
-    def _rest(self, at: float) -> None:
-        lifted = release(self.here, at)
-        # what follows a lift-off is fixed: one at a phase of an earlier one comes again and again
-        earlier = [phase for phase, wall in self.lifted if wall == self.wall]
-        again = any(periods_between(self.osc, phase, lifted) is not None for phase in earlier)
-        again |= self.osc.period is None and len(self.lifted) + 1 == SETTINGS.rests
-        if again or not np.isfinite(lifted):
-            self.status = Status.unresolved if np.isnan(lifted) else Status.sticks
-        self.lifted.append((lifted, self.wall))
-        self.tau, self.v = (lifted if np.isfinite(lifted) else at), 0.0
-        self.first = False
-
-    def result(self) -> Lyapunov:
-        superstable = self.status == Status.sticks
-        time, last = self.tau - self.start[0], (self.tau, self.v)
-        nothing = np.full(2, -np.inf if superstable else np.nan)
-        exponents, error, converged = nothing, np.full(2, 0.0 if superstable else np.nan), True
-        if self.sums.rows and not superstable:
-            rows = np.array(self.sums.rows)
-            exponents, error = _exponents(rows, time)
-            converged = _halves_agree(rows)
-        return Lyapunov(
-            exponents,
-            error,
-            self.flown,
+    def table(self) -> Array:
+        """The fields of `Lyapunov`, one row for each orbit."""
+        lives, over = self.lives, self.over
+        rows = np.array(self.growth.rows) if self.growth.rows else np.zeros((1, 4, self.size))
+        impacts, last = rows[:, 3].sum(axis=0), np.stack([lives.time(), lives.v])
+        time = last[0] - self.start[0]
+        exponents, error = exponents_of(rows, time)
+        exponents = np.where(over, -np.inf, np.where(impacts > 0, exponents, np.nan))
+        error = np.where(over, 0.0, error)
+        status = np.where(over & (lives.status != Status.unresolved), Status.sticks, lives.status)
+        columns = [
+            *exponents,
+            *error,
+            impacts,
             time,
-            self.start,
-            last,
-            np.int8(self.status),
-            superstable,
+            *self.start,
+            *last,
+            status,
+            over,
             self.before,
-            converged,
-        )
+            _halves_agree(rows) | over,
+        ]
+        return np.stack(columns, axis=1).astype(float)
 
 
-def _halves_agree(rows: Array) -> bool:
+def _repeats(lives: Lives, stretch: Stretch) -> Array:
+    """Whether the last state of orbits is one of those before, of the longest period that is looked for."""
+    times, speeds = stretch.rows[..., 0], np.where(stretch.rows[..., 11] == 1, -1.0, 1.0) * stretch.rows[..., 1]
+    result = np.zeros(stretch.chosen.size, bool)
+    clocked = not lives.members.osc.autonomous
+    for n in range(1, min(SETTINGS.period, times.shape[1] - 1) + 1):
+        with np.errstate(all="ignore"):
+            turns = (times[:, -1] - times[:, -1 - n]) / lives.unit[stretch.chosen]
+            off = np.abs(turns - np.rint(turns)) if clocked else 0.0 * turns
+            away = np.maximum(off, np.abs(speeds[:, -1] - speeds[:, -1 - n]) / np.abs(speeds[:, -1]))
+        repeats = np.isfinite(lives.unit[stretch.chosen]) | (not clocked)
+        result |= stretch.plain & repeats & (stretch.flown == times.shape[1]) & (away < SETTINGS.close)
+    return result
+
+
+def _halves_agree(rows: Array) -> Array:
     """Whether the larger exponents of both halves differ by no more than their errors, and than a turn of the vector.
 
     A periodic orbit has no spread; the vector that is followed turns there by a bounded angle, which moves the mean by
@@ -385,36 +448,28 @@ def _halves_agree(rows: Array) -> bool:
     """
     middle = len(rows) // 2
     if middle < 2:
-        return True
-    halves = [_exponents(half, float(half[:, 1].sum())) for half in (rows[:middle], rows[middle:])]
-    times = rows[:middle, 1].sum(), rows[middle:, 1].sum()
+        return np.ones(rows.shape[2], bool)
+    halves = [exponents_of(half, half[:, 0].sum(axis=0)) for half in (rows[:middle], rows[middle:])]
+    times = [half[:, 0].sum(axis=0) for half in (rows[:middle], rows[middle:])]
     (one, error), (other, spread) = halves
-    allowed = SETTINGS.apart * np.hypot(error[0], spread[0]) + 1 / min(times)
-    return bool(abs(one[0] - other[0]) <= allowed)
+    with np.errstate(all="ignore"):
+        allowed = SETTINGS.apart * np.hypot(error[0], spread[0]) + 1 / np.minimum(*times)
+        return np.asarray(~(np.abs(one[0] - other[0]) > allowed))
 
 
-def _matrices(osc: Oscillator, found: Segment, tau: Array, v: Array, wall: Array) -> Array:
-    """D G of the impacts of a segment, shape (n, 2, 2)."""
-    if not compiled_model(osc).linear:
-        return np.asarray(derivative(osc, tau, v, wall=None if osc.upper is None else wall).matrix)
-    slope = rebound_slope(osc, found.velocity)
-    by_tau, by_v, speed_by_tau, speed_by_v = found.slopes
-    return np.stack([1 + by_tau, by_v, slope * speed_by_tau, slope * speed_by_v], axis=-1).reshape(-1, 2, 2)
-
-
-def _exponents(rows: Array, time: float) -> tuple[Array, Array]:
-    """Exponents per unit of time and their standard errors, by groups of stretches of equal number."""
+def exponents_of(rows: Array, time: Array) -> tuple[Array, Array]:
+    """Exponents per unit of time and their standard errors, by groups of stretches of equal number, shapes (2, n)."""
     groups = min(SETTINGS.groups, len(rows))
     parts = np.array([group.sum(axis=0) for group in np.array_split(rows, groups)])
-    growth = np.stack([parts[:, 2], parts[:, 3] - parts[:, 2]], axis=1)
-    exponents = growth.sum(axis=0) / time
-    error = np.full(2, np.nan)
-    if groups > 1:
-        # of a ratio of sums: what the growth of a group differs by from its time at the mean rate
-        with np.errstate(invalid="ignore"):  # where impacts leave no velocity all of a column is -inf
-            off = growth - np.outer(parts[:, 1], exponents)
-        error = np.sqrt((off**2).sum(axis=0) * groups / (groups - 1)) / time
-        error += SETTINGS.rounded * EPSILON * rows[:, 0].sum() / time
-        error[np.isneginf(exponents)] = 0.0
-    order = np.argsort(-exponents, kind="stable")
-    return exponents[order], error[order]
+    with np.errstate(all="ignore"):  # where impacts leave no velocity all areas are -inf
+        growth = np.stack([parts[:, 1], parts[:, 2] - parts[:, 1]])
+        exponents = growth.sum(axis=1) / time
+        error = np.full(exponents.shape, np.nan)
+        if groups > 1:
+            # of a ratio of sums: what the growth of a group differs by from its time at the mean rate
+            off = growth - parts[:, 0] * exponents[:, None]
+            error = np.sqrt((off**2).sum(axis=1) * groups / (groups - 1)) / time
+            error += SETTINGS.rounded * EPSILON * rows[:, 3].sum(axis=0) / time
+            error[np.isneginf(exponents)] = 0.0
+    order = np.argsort(-exponents, axis=0, kind="stable")
+    return np.take_along_axis(exponents, order, axis=0), np.take_along_axis(error, order, axis=0)

@@ -41,12 +41,12 @@ class OrbitSettings:
 
 
 SETTINGS = OrbitSettings()
+# What follows the last event, by the kind of the phase after it
 ENDINGS = {
     "": "all flights asked for were flown",
     "sticking": "at rest from there on",
     "unresolved": "the next flight is not resolved",
 }
-"""What follows the last event, by the kind of the phase after it."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)

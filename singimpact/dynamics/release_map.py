@@ -19,8 +19,8 @@ from singimpact.oscillator.model import Oscillator
 from singimpact.result import Result, value_in_words
 from singimpact.status import Status, status_array
 
+# Phases of a period where none are given
 PHASES = 1000
-"""Phases of a period where none are given."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)

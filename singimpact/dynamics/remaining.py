@@ -25,10 +25,10 @@ from singimpact.generated.completion import chatter_terms
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration, at_wall
 
+# Terms of the time left, where rho is smooth at rest
 ORDER = 4
-"""Terms of the time left, where rho is smooth at rest."""
+# Of the sum of speeds, where rho is not; each is smaller by about C w^q
 TERMS = 8
-"""Of the sum of speeds, where rho is not; each is smaller by about C w^q."""
 
 
 def remaining(osc: Oscillator, tau: Array, v: Array, a: Array | None = None) -> tuple[Array, Array]:
@@ -62,16 +62,16 @@ def remaining(osc: Oscillator, tau: Array, v: Array, a: Array | None = None) -> 
     return sum(reversed(terms)), np.maximum(np.abs(last), likely)
 
 
+# Derivatives of f by x and x' in the terms
 NAMES = {(0, 1): "f_01", (0, 2): "f_02", (0, 3): "f_03", (1, 0): "f_10", (1, 1): "f_11"}
-"""Derivatives of f by x and x' in the terms."""
 
 
 @lru_cache(maxsize=256)
-def _force_trees(osc: Oscillator) -> dict[str, Expression]:
-    """Derivatives of f at (c, 0, t) as trees in t, and f_011, that of f_01 by t."""
-    trees, at_rest = dict[str, Expression](), {"x": osc.clearance, "xdot": number(0)}
+def force_trees(force: Expression, clearance: Expression) -> dict[str, Expression]:
+    """Derivatives of f at (c, 0, t) as trees in t and letters, and f_011, that of f_01 by t."""
+    trees, at_rest = dict[str, Expression](), {"x": clearance, "xdot": number(0)}
     for (i, k), name in NAMES.items():
-        tree = osc.force()
+        tree = force
         for letter in ["x"] * i + ["xdot"] * k:
             tree = derivative(tree, letter)
         trees[name] = substitute(tree, at_rest)
@@ -79,7 +79,10 @@ def _force_trees(osc: Oscillator) -> dict[str, Expression]:
 
 
 def _forces_at(osc: Oscillator, tau: Array) -> dict[str, Any]:
-    return {name: evaluate(tree, {"t": tau}, DOUBLES) + 0.0 * tau for name, tree in _force_trees(osc).items()}
+    return {
+        name: evaluate(tree, {"t": tau}, DOUBLES) + 0.0 * tau
+        for name, tree in force_trees(osc.force(), osc.clearance).items()
+    }
 
 
 @lru_cache(maxsize=256)
@@ -87,7 +90,7 @@ def _jets(osc: Oscillator) -> tuple[dict[str, float], dict[str, float], tuple[Ex
     """Derivatives of f at (c, 0), coefficients of rho, and the first derivatives of g as trees."""
     at = {} if osc.parametric else Contact.of(osc, 0.0, 0, ORDER, DOUBLES).f
     forces = {name: float(at.get(key, 0.0)) * factorial(key[0]) * factorial(key[1]) for key, name in NAMES.items()}
-    rebounds = _coefficients(osc)
+    rebounds = law_coefficients(osc)
     trees = []
     forcing = at_wall(osc).moving
     for _ in range(ORDER - 1):
@@ -96,7 +99,7 @@ def _jets(osc: Oscillator) -> tuple[dict[str, float], dict[str, float], tuple[Ex
     return forces, rebounds, tuple(trees)
 
 
-def _coefficients(osc: Oscillator) -> dict[str, float]:
+def law_coefficients(osc: Oscillator) -> dict[str, float]:
     """rho_2, rho_3, ... of a law that is smooth at rest; zeros of one that is not, which has other terms."""
     coefficients = {f"rho_{n}": 0.0 for n in range(2, ORDER + 1)}
     if not osc.smooth_at_rest:

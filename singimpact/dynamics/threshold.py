@@ -67,11 +67,11 @@ class Search:
 
 SEARCH = Search()
 
+# Status -> why a threshold has no velocity
 NOTES = {
     int(Status.none): "a_c has no zero ahead into which gamma runs, so that a chatter here comes to rest",
     int(Status.unresolved): "the next zero of a_c, its order, or the two sides of gamma are not decided",
 }
-"""Status -> why a threshold has no velocity."""
 
 
 @dataclass(frozen=True, repr=False)

@@ -70,18 +70,17 @@ def test_a_command(copy, clone):
 
 
 def test_a_claim(copy, clone):
-    assert steps(clone, "a claim")[0] == "singimpact/paper/claims/sections/SECTION.py"
+    section = "singimpact/paper/claims/sections/SECTION"
+    assert steps(clone, "a claim") == [f"{section}.py", f"{section}.toml"]
     put(
         copy,
         "singimpact/paper/claims/sections/section2.py",
-        '    Claim(\n        id="e:acc",',
-        '    Claim(\n        id="toy",\n        section="2.1",\n        title="one and one",\n'
-        '        printed=Statement("1+1=2", sympy.Integer(2)),\n'
-        "        verify=lambda value: every([('1 + 1', is_zero(value - 2))]),\n"
-        '        mutants=(sympy.Integer(3),),\n    ),\n    Claim(\n        id="e:acc",',
+        "CLAIMS = {\n",
+        'CLAIMS = {\n    "toy": Encoding(\n        sympy.Integer(2),\n'
+        "        lambda value: every([('1 + 1', is_zero(value - 2))]),\n        (sympy.Integer(3),),\n    ),\n",
     )
-    freeze = "import sys; sys.path.insert(0, 'derivations'); import freeze\n"
-    run(copy, "-c", freeze + "for path, content in freeze.claim_index().items():\n    path.write_bytes(content)")
+    with (copy / "singimpact/paper/claims/sections/section2.toml").open("a") as words:
+        words.write("\n[toy]\nsection = '2.1'\ntitle = 'one and one'\nprinted = '1+1=2'\n")
     verdicts = json.loads(run(copy, "-m", "singimpact", "verify", "toy", "--json"))["claims"]
     assert {verdict["id"]: verdict["verdict"] for verdict in verdicts} == {"toy": "proved"}
 

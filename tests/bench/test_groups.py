@@ -41,6 +41,7 @@ PEERS = {
     "public": {"heyoka", "scipy", "numba"},
     "chatter": {"scipy DOP853, 1e-9", "heyoka, 1e-9", *EVENTS},
     "series": {"sympy, integrals and series", "sympy, implicit function"},
+    "ensemble": set(),
     "limit": {"reference"},  # a command of .ci/check measures it
 }
 CUT = ("order", "tolerance")  # settings at which an answer is not meant to have all digits
@@ -57,7 +58,7 @@ def test_group_at_its_smallest_size(name):
     assert all(row.microseconds > 0 for row in found.rows)
     judged = [row for row in ours if row.wrong is not None and not row.setting.startswith(CUT)]
     assert [row for row in judged if row.wrong] == []
-    assert judged or name == "series"
+    assert judged or name in ("series", "ensemble")
     assert not found.skipped
 
 

@@ -48,8 +48,10 @@ GUARDS = {
     "singimpact/paper/claims/sections/section4b.py": CLAIMS,
     "singimpact/paper/claims/sections/section5.py": CLAIMS,
     "singimpact/paper/claims/verifiers.py": CLAIMS,
-    "singimpact/algebra/checking.py": ["tests/tool/algebra", "tests/tool/fuzzing/test_certificates_fuzzed.py"],
-    "singimpact/algebra/plain.py": ["tests/tool/algebra", "tests/tool/fuzzing/test_certificates_fuzzed.py"],
+    "singimpact/certificates/claims_proofs.py": [
+        "tests/tool/algebra",
+        "tests/tool/fuzzing/test_certificates_fuzzed.py",
+    ],
     "singimpact/dynamics/chatter.py": ["tests/tool/dynamics"],
     "singimpact/dynamics/remaining.py": ["tests/tool/dynamics"],
     "singimpact/flights/kernels/roots.py": ["tests/tool/flights"],

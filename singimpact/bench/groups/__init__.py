@@ -2,13 +2,14 @@
 
 from collections.abc import Callable, Iterator
 
-from singimpact.bench.groups import chatter_rows, limit_rows, public_rows, series_rows
+from singimpact.bench.groups import chatter_rows, limit_rows, many_rows, public_rows, series_rows
 from singimpact.bench.measuring import Case, Effort, Measured, measure
 
 GROUPS: dict[str, Callable[[Effort], Iterator[Case]]] = {
     "public": public_rows.cases,
     "chatter": chatter_rows.cases,
     "series": series_rows.cases,
+    "ensemble": many_rows.ensemble,
     "limit": limit_rows.cases,
 }
 

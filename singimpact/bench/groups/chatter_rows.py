@@ -5,7 +5,6 @@ wanted; and c = 0.7 or Duffing's model, from other states in every timed call. A
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
-from typing import Any
 
 from singimpact.bench.drawn import CHATTERING, Draws, Problem, States, counted, model, pressing, values
 from singimpact.bench.groups.impact_map_rows import ACCURACY, HEYOKA, SCIPY, taylor_stepper
@@ -13,7 +12,7 @@ from singimpact.bench.measuring import Case, Effort, Method, condition, with_pee
 from singimpact.bench.peers import followed_impacts, runge_kutta, taylor_events
 from singimpact.bench.peers.followed_impacts import Fly
 from singimpact.dynamics.threshold import threshold
-from singimpact.impact_oscillator import ImpactOscillator, linear
+from singimpact.impact_oscillator import linear
 
 STATE = "1.2", "0.01"
 NAME = "chatter.tau_inf.linear[w=2,c=0.3,r={}](1.2,0.01)"
@@ -73,7 +72,10 @@ def states_case(family: str, restitution: float, count: int, effort: Effort) -> 
         lambda: [summed(HEYOKA, taylor_stepper(kind), draw(5))],
         lambda: [summed(SCIPY, runge_kutta.stepper(kind, ACCURACY[SCIPY]), draw(1))],
     )
-    truth, kappas = _in_digits_of(osc, draw(1 if effort.quick else JUDGED[restitution])())
+    # of linear models these are enclosures, which share no flight with the answers in doubles
+    judged = draw(1 if effort.quick else JUDGED[restitution])().problems()
+    truth = [osc.chatter_limit(at.tau, at.v, digits=25).tau for at in judged]
+    kappas = [condition(lambda tau, v: float(osc.chatter_limit(tau, v).tau), at.tau, at.v, 1e-4) for at in judged]
     name = "linear" if family == CHATTERING else "Duffing"
     return Case(f"{name}, r = {restitution:g}, {setting}", methods, truth, kappas, skipped)
 
@@ -83,13 +85,6 @@ def _a_state(states: States) -> list[float]:
         float(states.osc.chatter_limit(tau, v).tau)
         for tau, v in zip(states.tau.tolist(), states.v.tolist(), strict=True)
     ]
-
-
-def _in_digits_of(osc: ImpactOscillator, states: States) -> tuple[list[Any], list[float]]:
-    """Limits with 25 digits: of linear models enclosures, which share no flight with the answers in doubles."""
-    pairs = list(zip(states.tau.tolist(), states.v.tolist(), strict=True))
-    kappas = [condition(lambda tau, v: float(osc.chatter_limit(tau, v).tau), tau, v, 1e-4) for tau, v in pairs]
-    return [osc.chatter_limit(tau, v, digits=25).tau for tau, v in pairs], kappas
 
 
 def summed(name: str, fly: Fly, draw: Draws) -> Method:

@@ -18,19 +18,20 @@ import singimpact as si
 from singimpact.algebra.numbers import Array
 from singimpact.bench.drawn import CHATTERING, CLEARANCES, OMEGAS, Draws, States
 from singimpact.bench.fresh import cost
+from singimpact.bench.groups.many_rows import family_of, one_by_one
 from singimpact.bench.measuring import Aim, Case, Effort, Method, Row, Timed
 from singimpact.branches.events import PERIOD_DOUBLING
 
 STORED = Path(__file__).parents[1] / "data" / "limits.json"
 ArrayCall = Callable[[Array, Array], object]
-MOST = 1.5
-"""A ratio may exceed the stored one by this factor."""
+MOST = 1.5  # a ratio may exceed the stored one by this factor
+# A call that is as much work for a flight from a wall, without another one, and how many of it each may cost.
 BESIDE = {
     "launch": ("first_hit", 2.0),
     "between walls": ("first_hit", 1.5),
     "iterate between walls": ("iterate", 1.5),
+    "a family": ("one model", 1.5),
 }
-"""A call that is as much work for a flight from a wall, without another one, and how many of it each may cost."""
 MODELS = {
     "linear": si.linear("2.8", "0.3", "0.8"),
     "Duffing": si.ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "cos(1.7*t)", "0.3", "0.8"),
@@ -44,8 +45,8 @@ MODELS = {
     ),
     "damped": si.linear("1.7", "0.3", "0.8", damping="0.1"),
 }
+# Microseconds of a state of a nonlinear model, in arrays.
 FLIGHTS = {"Duffing": 1.8, "van der Pol": 2.0, "pendulum": 5.0, "exp and rational": 5.0, "tanh": 8.0}
-"""Microseconds of a state of a nonlinear model, in arrays."""
 TERMS = 20_000
 
 
@@ -69,6 +70,7 @@ def cases(effort: Effort) -> Iterator[Case]:
 # ---- what a new process costs
 
 
+# Models, and microseconds of CPU of the first script in a new cache folder.
 SCRIPTS = {
     "linear": (f"si.linear({OMEGAS['linear']}, {CLEARANCES['linear']}, 0.8)", 0.8e6),
     "Duffing": (
@@ -81,7 +83,6 @@ SCRIPTS = {
         1.5e6,
     ),
 }
-"""Models, and microseconds of CPU of the first script in a new cache folder."""
 SCRIPT = """import singimpact as si
 import numpy as np
 osc = {model}
@@ -162,6 +163,10 @@ def arrays(effort: Effort) -> list[Method]:
         rows.append(_drawn("derivative", name, 2 * aim, draw, model.derivative))
         rows.append(_drawn("inverse_map", name, 2 * aim, draw, model.inverse_map))
         if name in ("linear", "Duffing"):
+            members = 100 if effort.quick else 500
+            for call, of in (("one model", one_by_one), ("a family", family_of)):
+                setting = f"{name}, 300 impacts"
+                rows.append(_plain(call, setting, None, 300 * members, of(model, members)))
             rows.append(_drawn("first_hit", f"{name}, array", aim, draw, model.first_hit))
             rows.append(_drawn("launch", f"{name}, array", 2 * aim, draw, _off_wall(model)))
             rows.append(_drawn("between walls", f"{name}, array", 1.5 * aim, draw, _between(model)))

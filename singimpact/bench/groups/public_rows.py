@@ -4,7 +4,7 @@ Cases of the map, of chatter and of orbits under names of one kind, with the loo
 which only the time is measured: no truth of a picture is known.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 from itertools import chain
@@ -25,6 +25,7 @@ from singimpact.bench.groups.impact_map_rows import (
     sizes_of,
     taylor_stepper,
 )
+from singimpact.bench.groups.many_rows import timed
 from singimpact.bench.measuring import NO_AIM, Case, Counted, Effort, Method, with_peers
 from singimpact.bench.peers import fixed_steps, followed_impacts, runge_kutta
 from singimpact.bench.truth import drawn_flights
@@ -135,8 +136,8 @@ def _basins(effort: Effort) -> list[Method]:
     n = fixed_steps.numbers("linear", 2.8, 0.1, -1.0)
     own = partial(si.basins, TWO_BASINS, size=side)
     return [
-        _timed("singimpact", f"{side} x {side}", side**2, own),
-        _timed(
+        timed("singimpact", f"{side} x {side}", side**2, own),
+        timed(
             "numba",
             f"{few} x {few}",
             few**2,
@@ -151,16 +152,6 @@ def _diagrams(effort: Effort) -> list[Method]:
     # of 260 impacts at each clearance the first 200 are not drawn, because the orbit settles in them
     models = [fixed_steps.numbers("linear", 2.8, c, -1.0) for c in np.linspace(*OVER, few)]
     return [
-        _timed("singimpact", f"{count} values", count, own),
-        _timed("numba", f"{few} values", few, lambda: [fixed_steps.orbit(0.0, 0.1, 260, 0.8, n)[200:] for n in models]),
+        timed("singimpact", f"{count} values", count, own),
+        timed("numba", f"{few} values", few, lambda: [fixed_steps.orbit(0.0, 0.1, 260, 0.8, n)[200:] for n in models]),
     ]
-
-
-def _timed(name: str, setting: str, problems: int, call: Callable[[], object]) -> Method:
-    """A method whose answers nobody judges."""
-
-    def run() -> list[None]:
-        call()
-        return [None]
-
-    return Method(name, setting, run, problems=problems)

@@ -1,6 +1,6 @@
 """Impact after impact for any peer that flies to its first event: orbits, chatter limits, thresholds; D G at a hit."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from math import cos
 
@@ -13,12 +13,7 @@ DEAD = 0.1  # of the width that is asked for: on gamma v falls with every impact
 
 def chatter_limit(fly: Fly, problem: Problem, stop: float) -> float:
     """Impacts until v < stop, and the rest of the chatter by its first term, 2v/(|a|(1 - r))."""
-    tau, v = problem.tau, problem.v
-    for _ in range(MOST):
-        if not v > stop:
-            break
-        time, velocity = fly(replace(problem, tau=tau, v=v))
-        tau, v = tau + time, problem.restitution * abs(velocity)
+    *_, (tau, v) = [(problem.tau, problem.v), *_states(fly, problem, stop)]
     a = cos(problem.omega * tau) - problem.clearance
     return tau - 2 * v / (a * (1 - problem.restitution))
 
@@ -35,15 +30,18 @@ def threshold(fly: Fly, problem: Problem, end: float, width: float) -> float:
 
 
 def _lands_after(fly: Fly, problem: Problem, end: float, stop: float) -> bool:
+    return any(not tau < end for tau, _ in _states(fly, problem, stop))
+
+
+def _states(fly: Fly, problem: Problem, stop: float) -> Iterator[tuple[float, float]]:
+    """The states after the impacts from a state, while v > stop."""
     tau, v = problem.tau, problem.v
     for _ in range(MOST):
         if not v > stop:
-            return False
+            return
         time, velocity = fly(replace(problem, tau=tau, v=v))
         tau, v = tau + time, problem.restitution * abs(velocity)
-        if not tau < end:
-            return True
-    return False
+        yield tau, v
 
 
 def chain(fly: Fly, problem: Problem, count: int) -> list[float]:

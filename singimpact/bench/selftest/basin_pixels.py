@@ -48,8 +48,8 @@ class FollowedSettings:
 
 
 FOLLOWED = FollowedSettings()
+# tau within a period, v, which is < 0 or -0.0 at an upper wall, and the periods before.
 State = tuple[float, float, float]
-"""tau within a period, v, which is < 0 or -0.0 at an upper wall, and the periods before."""
 
 
 @dataclass(frozen=True)
@@ -261,7 +261,11 @@ def _pixel(follower: Follower, state: tuple[float, float], answer: LongRun, firs
     elif answer.kind == "sensitive":
         _sensitive(follower, state, fate, call, tally)
     elif answer.kind in UNSETTLED and not first and (open_ := _unsettled_beside(follower, state, fate)):
-        _unsettled(follower, answer, open_, call, tally)
+        # "chaotic" says that neighbours separate too
+        if answer.kind == "not decided" or follower.separates((open_.tau, open_.v), FOLLOWED.chaos, PIXELS.impacts):
+            tally.judge(0.0, call)
+        else:
+            tally.leave("no period, and neighbours separate slowly if at all")
     elif _agrees(follower, answer, first, fate):
         tally.judge(0.0, call)
     elif cause := _explained(follower, state, answer, fate):
@@ -319,14 +323,6 @@ def _unsettled_beside(follower: Follower, state: tuple[float, float], fate: Fate
         return fate if fate.kind == "unsettled" else None
     fates = (follower.first(state[0] + part, state[1] * (1 + part)) for part in PIXELS.moved)
     return next((beside for beside in fates if beside.kind == "unsettled"), None)
-
-
-def _unsettled(follower: Follower, answer: LongRun, fate: Fate, call: str, tally: Tally) -> None:
-    """No period here either; "chaotic" says that neighbours separate too."""
-    if answer.kind == "not decided" or follower.separates((fate.tau, fate.v), FOLLOWED.chaos, PIXELS.impacts):
-        tally.judge(0.0, call)
-    else:
-        tally.leave("no period, and neighbours separate slowly if at all")
 
 
 def _sensitive(follower: Follower, state: tuple[float, float], fate: Fate, call: str, tally: Tally) -> None:

@@ -59,8 +59,7 @@ class Scales(NamedTuple):
     period: float | None
 
 
-LEAST = 1e-300
-"""Allowed of a velocity that is 0, with restitution 0."""
+LEAST = 1e-300  # allowed of a velocity that is 0, with restitution 0
 
 
 class Flown(NamedTuple):

@@ -7,7 +7,7 @@ from typing import Any
 
 import mpmath
 
-from singimpact.bench.stress.judging import Function, Trial, moved, powers
+from singimpact.bench.stress.judging import Judge, Trial, moved, powers
 from singimpact.branches.branch import branch
 from singimpact.branches.event_curve import event_curve
 from singimpact.branches.events import GRAZE
@@ -104,20 +104,10 @@ def _grazes(curve: bool, name: str, points: int) -> Iterator[Trial]:
                 yield Trial(place_of, [value], values, rounding)
 
 
-CLOSED_FORM = "closed form"
-GRAZES = "its grazes are judged, which have no other states"
-FUNCTIONS = (
-    Function.at(
-        ("t -> 0", "r -> 0", "r -> 1"),
-        "launch",
-        _launched,
-        CLOSED_FORM,
-        "its first impact is judged, of a fall; others are those of first_hit",
-    ),
-    Function.at(
-        ("omega -> 1", "r -> 1"), "lyapunov", _exponents, CLOSED_FORM, "the sum of both is judged, along one orbit"
-    ),
-    Function.at(("omega -> 1", "r -> 1"), "periodic", _periodic, CLOSED_FORM, "its states are answers, not given"),
-    Function.at(("v -> 0", "omega -> 1", "r -> 0", "r -> 1"), "branch", partial(_grazes, False), CLOSED_FORM, GRAZES),
-    Function.at(("v -> 0", "r -> 0", "r -> 1"), "event_curve", partial(_grazes, True), CLOSED_FORM, GRAZES),
-)
+JUDGES: dict[str, Judge] = {
+    "launch": _launched,
+    "lyapunov": _exponents,
+    "periodic": _periodic,
+    "branch": partial(_grazes, False),
+    "event_curve": partial(_grazes, True),
+}

@@ -15,7 +15,7 @@ import numpy as np
 from singimpact import theory
 from singimpact.algebra.rings import EXACT
 from singimpact.bench.measuring import condition
-from singimpact.bench.stress.judging import DIGITS, Function, Trial, moved, number, powers
+from singimpact.bench.stress.judging import DIGITS, Judge, Trial, moved, number, powers
 from singimpact.bench.stress.launches import Launch
 from singimpact.codegen.over_lists import plain
 from singimpact.contact.contact import Contact
@@ -225,43 +225,14 @@ def _stable_manifold(name: str, points: int) -> Iterator[Trial]:
         yield Trial(f"r = {rate}, tau = {tau!r}, v = {v!r}", [float(end.tau)], [foot], [kappa - 1])
 
 
-SAME = "the cut series in 60 digits, exact coefficients"
-WITHOUT = "a function of sigma, t and jets: no omega, no r; v at the place is what vanishes there; it is near 0 only"
-BALLS = "digits=, in balls"
-FUNCTIONS = (
-    Function.at(
-        NEAR, "chatter_limit", _chatter_limit, BALLS, "flights get short: P, Z and long flights are no chatter"
-    ),
-    Function.at(
-        ALONG_GAMMA,
-        "threshold",
-        _threshold,
-        BALLS,
-        "v is the answer; r up to 0.94, beyond which its enclosure takes minutes",
-    ),
-    Function.at(
-        ("a -> 0", *RATES), "gamma grown", _gamma_grown, BALLS, "v is the answer; the curve has no flights of its own"
-    ),
-    Function.at(("v -> 0", "a -> 0", *RATES), "stable manifold", _stable_manifold, BALLS, "a curve over one foot"),
-    *(
-        Function.at(
-            PLACES, f"v_c_on_arrays{', compensated' if twice else ''}", partial(_on_arrays, twice), SAME, WITHOUT
-        )
-        for twice in (False, True)
-    ),
-    Function.at(PLACES, "emitted numpy", _emitted_numpy, "the same text on 60 digits", WITHOUT),
-    Function.at(
-        ("r -> 0", "r -> 1", "a -> 0", "a' -> 0"),
-        "gamma, a series",
-        _gamma,
-        "digits=60",
-        "a function of sigma and jets near the tangency",
-    ),
-    Function.at(
-        ("v -> 0", "r -> 0", "r -> 1", "a -> 0"),
-        "chatter_limit, a series",
-        _completion,
-        "digits=60",
-        "a function of v at a regular point",
-    ),
-)
+JUDGES: dict[str, Judge] = {
+    "chatter_limit": _chatter_limit,
+    "threshold": _threshold,
+    "gamma grown": _gamma_grown,
+    "stable manifold": _stable_manifold,
+    "v_c_on_arrays": partial(_on_arrays, False),
+    "v_c_on_arrays, compensated": partial(_on_arrays, True),
+    "emitted numpy": _emitted_numpy,
+    "gamma, a series": _gamma,
+    "chatter_limit, a series": _completion,
+}

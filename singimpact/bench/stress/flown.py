@@ -10,8 +10,8 @@ import flint
 import numpy as np
 
 from singimpact.algebra.precision import balls_at
-from singimpact.bench.stress.judging import STEP, Function, Sweep, Trial
-from singimpact.bench.stress.launches import PLACES, Launch, SteepLaunch, both
+from singimpact.bench.stress.judging import STEP, Judge, Trial
+from singimpact.bench.stress.launches import Launch, SteepLaunch, both
 from singimpact.bench.truth import enclosed_flight
 from singimpact.bench.truth.enclosed_flight import EnclosureSettings
 from singimpact.bench.truth.first_hit import first_of_both
@@ -115,16 +115,12 @@ def _status(found: Any, right: int) -> tuple[int, int]:
     return (right, right) if given in GONE and right in GONE else (given, right)
 
 
-def _swept(place: str, judge: Callable[[Launch], Trial | None], points: int) -> Iterator[Trial]:
+def _swept(judge: Callable[[Launch], Trial | None], place: str, points: int) -> Iterator[Trial]:
     for launch in both(place, points):
         with balls_at(launch.bits):
             trial = judge(launch)
         if trial is not None:
             yield trial
-
-
-def _sweeps(judge: Callable[[Launch], Trial | None], without: tuple[str, ...] = ()) -> dict[str, Sweep]:
-    return {place: partial(_swept, place, judge) for place in PLACES if place not in without}
 
 
 def _first_hit(launch: Launch) -> Trial:
@@ -138,7 +134,8 @@ def _first_hit(launch: Launch) -> Trial:
     return Trial(str(launch), found, [true.time, true.velocity], true.moved(sizes(launch, true.time)))
 
 
-def _stepped(launch: Launch, step: Any) -> Trial:
+def _impact_map(launch: Launch) -> Trial:
+    step = launch.model.impact_map(launch.tau, launch.v, horizon=launch.horizon)
     true = landing(launch, launch.tau, launch.v)
     if isinstance(true, int) or step.status != Status.hit:
         return Trial(str(launch), status=_status(step.status, true if isinstance(true, int) else int(Status.hit)))
@@ -240,23 +237,12 @@ def _chained(launch: Launch, tau: Any, v: Any) -> Trial | None:
     return Trial(str(launch), [float(tau), float(v)], list(at), list(rounded))
 
 
-BALLS = "balls of bench/truth"
-FUNCTIONS = (
-    Function("first_hit", _sweeps(_first_hit), BALLS, ""),
-    Function(
-        "impact_map",
-        _sweeps(lambda at: _stepped(at, at.model.impact_map(at.tau, at.v, horizon=at.horizon))),
-        BALLS,
-        "",
-    ),
-    Function(
-        "flight",
-        _sweeps(_flight, ("r -> 0", "r -> 1", "steep layers", "t in f", "two walls")),
-        BALLS,
-        "a flight knows no r; balls of steep flights give the hit alone; it takes one wall",
-    ),
-    Function("derivative", _sweeps(_derivative), BALLS + ", differences", ""),
-    Function("inverse_map", _sweeps(_inverse), BALLS + ", backwards", ""),
-    Function("orbit", _sweeps(_orbit), BALLS + ", chained", ""),
-    Function("iterate", _sweeps(_iterate), BALLS + ", chained", ""),
-)
+JUDGES: dict[str, Judge] = {
+    "first_hit": partial(_swept, _first_hit),
+    "impact_map": partial(_swept, _impact_map),
+    "flight": partial(_swept, _flight),
+    "derivative": partial(_swept, _derivative),
+    "inverse_map": partial(_swept, _inverse),
+    "orbit": partial(_swept, _orbit),
+    "iterate": partial(_swept, _iterate),
+}

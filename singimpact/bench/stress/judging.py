@@ -5,11 +5,8 @@
 The right status is 0 units, a wrong one inf.  Nothing is forgiven besides: no least error is always allowed.
 """
 
-from __future__ import annotations
-
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import partial
 from math import inf
 from typing import Any
 
@@ -86,12 +83,12 @@ def number(value: Any) -> Any:
     return mpmath.mpf(value)
 
 
-def moved(function: Callable[..., Any], inputs: Sequence[Any], sizes: Sequence[Any] | None = None) -> tuple[Any, Any]:
-    """Values of a function of 60 digits, and sum |d value/d input| size by differences, a number for each value.
+def moved(function: Callable[..., Any], inputs: Sequence[Any]) -> tuple[Any, Any]:
+    """Values of a function of 60 digits, and sum |d value/d input| |input| by differences, a number for each value.
 
     Parameters
     ----------
-    function : of as many numbers as there are inputs -> list of numbers. sizes : of the inputs; their moduli without.
+    function : of as many numbers as there are inputs -> list of numbers.
 
     Examples
     --------
@@ -103,7 +100,7 @@ def moved(function: Callable[..., Any], inputs: Sequence[Any], sizes: Sequence[A
         exact = [number(value) for value in inputs]
         values = function(*exact)
         total = [mpmath.mpf(0) for _ in values]
-        for index, size in enumerate(exact if sizes is None else [number(value) for value in sizes]):
+        for index, size in enumerate(exact):
             if not size:
                 continue
             change = abs(size) * mpmath.mpf(10) ** -STEP
@@ -114,8 +111,8 @@ def moved(function: Callable[..., Any], inputs: Sequence[Any], sizes: Sequence[A
         return values, total
 
 
-Sweep = Callable[[int], Iterator[Trial]]
-"""A function of the number of points: trials that approach a singular point."""
+Sweep = Callable[[int], Iterator[Trial]]  # a function of the number of points: trials that approach a singular point
+Judge = Callable[[str, int], Iterator[Trial]]  # of a place and the number of points: the trials of a function there
 
 
 @dataclass(frozen=True)
@@ -132,13 +129,6 @@ class Function:
     sweeps: dict[str, Sweep]
     route: str
     left_out: str
-
-    @classmethod
-    def at(
-        cls, places: Iterable[str], name: str, judge: Callable[[str, int], Iterator[Trial]], route: str, left_out: str
-    ) -> Function:
-        """A function whose sweeps are one function of the place and the number of points."""
-        return cls(name, {place: partial(judge, place) for place in places}, route, left_out)
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from typing import Any
 import mpmath
 import numpy as np
 
-from singimpact.bench.stress.judging import Function, Trial, moved, powers
+from singimpact.bench.stress.judging import Judge, Trial, moved, powers
 from singimpact.bench.stress.launches import Launch, both
 from singimpact.contact.points import tangency_points
 from singimpact.dynamics.unfolded_swan import swan_configuration
@@ -104,13 +104,9 @@ def _swan_configuration(_: str, points: int) -> Iterator[Trial]:
         yield Trial(f"kappa = {kappa!r}", given, truth, [1 + abs(value) for value in truth])
 
 
-FORMULA = "the formula in mpmath"
-
-
 # Vertices of the zero set and of the outline against the closed form of the flight from rest, solved in mpmath.
 
-Spot = tuple[Launch, tuple[float, float], tuple[float, float]]
-"""A model, and the windows of tau and t that are traced."""
+Spot = tuple[Launch, tuple[float, float], tuple[float, float]]  # a model, and the windows of tau and t that are traced
 NEAR: dict[str, Callable[[float], Spot]] = {
     "t -> 0": lambda off: (Launch("linear", clearance=0.5), (0.2, 0.6), (-off, off)),
     "omega -> 1": lambda off: (Launch("linear", omega=1 + off, clearance=0.5), (0.0, 6.0), (-3.0, 3.0)),
@@ -205,49 +201,13 @@ def _flight(omega: Any, c: Any, tau: Any, t: Any) -> tuple[Any, Any]:
     return x - c, -omega * size * mpmath.sin(at) - start * mpmath.sin(t) + rate * mpmath.cos(t)
 
 
-CLOSED_FORM, ALONE = (
-    "the closed form in mpmath",
-    "curves of a model: no launch velocity, no r; v of the outline at the flight's end",
-)
-FUNCTIONS = (
-    Function.at(
-        ("omega -> 1", "a -> 0", "a' -> 0", "huge tau"),
-        "acceleration",
-        _acceleration,
-        FORMULA,
-        "takes tau alone: no v, no flight, no r",
-    ),
-    Function.at(
-        ("omega -> 1", "a' -> 0"),
-        "tangency_points",
-        _tangency_points,
-        FORMULA,
-        "takes a model alone: no state, no flight, no r",
-    ),
-    Function.at(
-        ("omega -> 1",),
-        "swan_points",
-        _swan_points,
-        FORMULA,
-        "a' = 0 there always; takes f and g alone: no state, no flight, no r",
-    ),
-    *(
-        Function.at(
-            ("r -> 0", "r -> 1"),
-            f"fixed_points.{at}",
-            partial(_fixed_points, at),
-            "roots by mpmath",
-            "takes r alone",
-        )
-        for at in ("tangency", "swan")
-    ),
-    Function.at(
-        ("a' -> 0",),
-        "swan_configuration",
-        _swan_configuration,
-        "closed form of section 6",
-        "points of one model: no state, no r",
-    ),
-    Function.at(NEAR, "zero_set", partial(_judged, False), CLOSED_FORM, ALONE),
-    Function.at(NEAR, "outline", partial(_judged, True), CLOSED_FORM, ALONE),
-)
+JUDGES: dict[str, Judge] = {
+    "acceleration": _acceleration,
+    "tangency_points": _tangency_points,
+    "swan_points": _swan_points,
+    "fixed_points.tangency": partial(_fixed_points, "tangency"),
+    "fixed_points.swan": partial(_fixed_points, "swan"),
+    "swan_configuration": _swan_configuration,
+    "zero_set": partial(_judged, False),
+    "outline": partial(_judged, True),
+}

@@ -1,10 +1,14 @@
 """The runs of `singimpact stress`, and its table: a row for each function, a column for each singular point.
 
-A new public function: a `Function` in one of the files here; a test compares the rows with the public names.
+A new public function: a row in `data/stress.toml`, and what judges it in one of the files here; a test compares the
+rows with the public names.
 """
 
+import tomllib
 from collections.abc import Callable, Sequence
 from dataclasses import asdict
+from functools import partial
+from pathlib import Path
 from typing import Any
 
 from singimpact.bench.stress import closed_forms, expanded, flown, named
@@ -12,9 +16,19 @@ from singimpact.bench.stress.judging import LIMITS, Cell, Function, worst
 from singimpact.bench.stress.launches import PLACES
 from singimpact.inputs import require_known, unknown
 
-FUNCTIONS: dict[str, Function] = {
-    each.name: each for room in (flown, closed_forms, expanded, named) for each in room.FUNCTIONS
-}
+JUDGES = flown.JUDGES | closed_forms.JUDGES | expanded.JUDGES | named.JUDGES
+
+
+def _function(
+    name: str, route: str, places: Sequence[str] = (), without: Sequence[str] = (), left_out: str = ""
+) -> Function:
+    """A function whose sweeps are one function of the place and the number of points."""
+    chosen_places = places or [place for place in PLACES if place not in without]
+    return Function(name, {place: partial(JUDGES[name], place) for place in chosen_places}, route, left_out)
+
+
+ROWS = tomllib.loads((Path(__file__).parents[1] / "data" / "stress.toml").read_text(encoding="utf-8"))["function"]
+FUNCTIONS = {fields["name"]: _function(**fields) for fields in ROWS}
 POINTS, QUICK = 12, 4
 NOTE = (
     f"Units: error over epsilon times (|value| + what a relative change of every input does to it); over"

@@ -21,8 +21,8 @@ HORIZON = 2000.0
 SMALL = 10.0**-25  # relative step of a difference; the values have 60 digits and more
 DIGITS = 40
 Truth = tuple[list[str], list[float]]
+# From a state in balls to values and the times at which they are reached.
 Values = Callable[[Any, Any], tuple[list[Any], list[Any]]]
-"""From a state in balls to values and the times at which they are reached."""
 
 
 def hits(states: States, count: int) -> Truth:

@@ -36,8 +36,8 @@ TERMS = 28  # powers of S, below which the coefficients are known
 BITS = 192  # of the balls of the series: its coefficients are turned round l = 1
 BESIDE = Fraction(1, 4)  # width of the strip of complex l round [-1, 1]
 RADII = 24  # discs that are tried; each radius is 5/6 of the one before
+# Half the sides of boxes of x - c and of x' that are tried
 SIDES = tuple(Fraction(2) ** k for k in range(-4, 5))
-"""Half the sides of boxes of x - c and of x' that are tried."""
 
 
 @dataclass(frozen=True)

@@ -38,11 +38,12 @@ from singimpact.oscillator.wall_acceleration import sign_of_acceleration
 BITS = 96  # of the balls
 DIGITS = 20  # that bounds and places are printed with
 PHASES = 64  # of a period, tried for a start with a_c < 0
+# Reaches that are tried where none is given, in units of 1/omega_d or of the fastest forcing
 REACHES = tuple(
     Fraction(*part)
     for part in ((1, 2), (3, 8), (1, 4), (3, 16), (1, 8), (1, 12), (1, 16), (1, 24), (1, 32), (1, 64), (1, 128))
 )
-"""Reaches that are tried where none is given, in units of 1/omega_d or of the fastest forcing."""
+# Settings that are tried in turn for a box
 TRIED = (
     ProofSettings(),
     ProofSettings(thin=400),
@@ -51,15 +52,14 @@ TRIED = (
     ProofSettings(thin=1600, pieces=128),
     ProofSettings(N=8, D=28, thin=1600, pieces=192),
 )
-"""Settings that are tried in turn for a box."""
+# Width of a box of lambda in units of min(lambda, 1 - lambda): the first, its growth on success, the least
 WIDEST, GROWTH, NARROWEST = 0.02, 1.3, 2.0**-20
-"""Width of a box of lambda in units of min(lambda, 1 - lambda): the first, its growth on success, the least."""
 CUT, FINE = 7, 25  # decimals of the cuts between boxes of lambda, and of the lambda of one r
 LAUNCHES = 9  # halvings of the launch place, + 1, from which chatter is followed past a swan
 FAR, MARGIN = 100.0, 0.99  # time after tau_* where a_c has no further zero; part of the time to that zero
 COARSE = 2.0**-16  # tail of the series there, in units of b_j
+# Parts of the disc of convergence on which |A| is looked at after a swan
 AFTER = (Fraction(3, 4), Fraction(1, 2), Fraction(1, 4))
-"""Parts of the disc of convergence on which |A| is looked at after a swan."""
 
 
 @dataclass(frozen=True, repr=False)

@@ -9,7 +9,7 @@ import pytest
 import singimpact as si
 from singimpact.dynamics import ENDING
 from singimpact.dynamics.chatter import _abreast
-from singimpact.dynamics.remaining import _coefficients, remaining
+from singimpact.dynamics.remaining import law_coefficients, remaining
 from singimpact.flights import States
 
 EPSILON = 2.0**-52
@@ -95,7 +95,7 @@ def test_a_small_last_term_is_not_taken_for_the_error():
 @pytest.mark.parametrize("law", ["-0.8*v*exp(v)", "-v/(2 + v)", "-0.8*v*sqrt(1 + v)"])
 def test_coefficients_of_a_law_by_derivatives_are_those_of_its_expansion(law, monkeypatch):
     osc = si.ImpactOscillator("x", "cos(t)", 0, law)
-    expanded = _coefficients(osc)
+    expanded = law_coefficients(osc)
     monkeypatch.setattr(type(osc), "rho_at_rest", lambda _: None)
-    assert _coefficients(osc) == pytest.approx(expanded)
+    assert law_coefficients(osc) == pytest.approx(expanded)
     assert expanded["rho_2"] * expanded["rho_3"] != 0

@@ -126,8 +126,8 @@ def test_a_graze_and_no_return_are_said():
 
 
 def test_bad_input_is_refused_in_a_sentence():
-    with pytest.raises(InputError, match="an orbit starts from one state, give two numbers"):
-        si.lyapunov(LINEAR, [0, 1], 1)
+    with pytest.raises(InputError, match="do not broadcast"):
+        si.lyapunov(LINEAR, [0, 1], [1, 2, 3])
     with pytest.raises(InputError, match="impacts = 0 is not accepted"):
         si.lyapunov(LINEAR, 0, 1, 0)
     with pytest.raises(InputError, match="osc = 'x' is not accepted: give an ImpactOscillator"):

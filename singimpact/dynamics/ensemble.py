@@ -1,0 +1,323 @@
+"""`si.ensemble`: many orbits that live through chatter, rest and lift-off, and what is counted of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from contextlib import nullcontext
+from dataclasses import dataclass
+from functools import cached_property, partial
+from typing import Any, ClassVar
+
+import numpy as np
+
+from singimpact.algebra.numbers import Array, as_float, constant
+from singimpact.case_pools import ThreadPool
+from singimpact.cases import sweep
+from singimpact.dynamics.families import OscillatorFamily
+from singimpact.dynamics.lives import SETTINGS as LIFE, Lives, Stretch
+from singimpact.flights.members import Members
+from singimpact.flights.states import States
+from singimpact.flights.walls import wall_codes
+from singimpact.inputs import checked_keywords, refuse, require_memory, takes_two_walls, whole
+from singimpact.oscillator.model import Oscillator
+from singimpact.result import Result
+from singimpact.status import status_array
+
+# Orbits that are flown together; their random numbers are those of the block, wherever it is computed
+BLOCK = 2048
+# What is kept of each orbit
+COLUMNS = ("tau", "v", "wall", "status", "impacts", "rests", "first_rest", "resting", "speed")
+# The part of the time on which a_c changes below which chatter is over where its restitution is random
+SHORT = 1e-9
+
+
+@dataclass(frozen=True)
+class Survival(Result):
+    """The share of orbits that have not come to rest, and its binomial standard error, at times after the start."""
+
+    array_axes: ClassVar[Mapping[str, tuple[str, ...]]] = {"t": ("t",), "share": ("t",), "error": ("t",)}
+    t: Array
+    share: Array
+    error: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Ensemble(Result):
+    """Orbits of many states.
+
+    Attributes
+    ----------
+    tau, v, status, wall : the last states, and 0, or why an orbit ended before, of the shape of the states; `wall` of
+        two walls, else None. impacts : flown. rests : chatters that were over. first_rest : the time at which the
+        first one was, inf if none was. resting : time at rest on the wall.
+    start, duration : the first times of the orbits, and how long each lasts. mean_v : of the impacts.
+    """
+
+    tau: Array
+    v: Array
+    status: Array
+    impacts: Array
+    rests: Array
+    first_rest: Array
+    resting: Array
+    mean_v: Array
+    start: Array
+    duration: Array
+    wall: Array | None = None
+
+    def __repr__(self) -> str:
+        ended = np.count_nonzero(self.status)
+        rested = np.mean(np.isfinite(self.first_rest)) if self.tau.size else 0.0
+        words = f"{self.tau.size} orbits, {int(self.impacts.sum())} impacts: {100 * rested:.3g} % have come to rest"
+        return f"Ensemble({words}{f', {ended} ended' if ended else ''})"
+
+    @cached_property
+    def survival(self) -> Survival:
+        """The share of orbits that have not come to rest, at the times after the start at which one does."""
+        lasted = np.sort((self.first_rest - self.start).ravel())
+        times, n = np.concatenate([[0.0], lasted[np.isfinite(lasted)]]), lasted.size
+        share = 1 - np.searchsorted(lasted, times, side="right") / n
+        return Survival(times, share, np.sqrt(share * (1 - share) / n))
+
+    def escape_rate(self, after: object = 0) -> tuple[float, float]:
+        """The rate at which orbits come to rest for the first time, a unit of time, and its standard error.
+
+        Parameters
+        ----------
+        after : the time after the start from which on the rate is taken: the number of rests divided by the time at
+            risk, the estimate of greatest likelihood where the rate is constant.
+        """
+        begin = as_float(constant("after", after))
+        lasted = (self.first_rest - self.start).ravel()
+        at_risk = np.minimum(lasted, self.duration.ravel()) - begin
+        count = int(np.count_nonzero(np.isfinite(lasted) & (lasted > begin)))
+        time = float(at_risk[at_risk > 0].sum())
+        if not time > 0:
+            raise refuse("after", after, f"a time at which orbits go on, below {float(np.max(at_risk + begin)):.6g}")
+        return count / time, float(np.sqrt(count)) / time
+
+    @property
+    def averages(self) -> dict[str, tuple[float, float]]:
+        """Means over the orbits and their standard errors: impacts a unit of time, v of impacts, share of time at rest.
+
+        Orbits that ended early are left out.
+        """
+        whole_ones = (self.status.ravel() == 0) & (self.duration.ravel() > 0)
+        time = self.duration.ravel()[whole_ones]
+        columns = {
+            "impacts": self.impacts.ravel()[whole_ones] / time,
+            "v": self.mean_v.ravel()[whole_ones],
+            "rest": self.resting.ravel()[whole_ones] / time,
+        }
+        return {name: _mean(values[np.isfinite(values)]) for name, values in columns.items()}
+
+
+def _mean(values: Array) -> tuple[float, float]:
+    if not values.size:
+        return np.nan, np.nan
+    return float(values.mean()), float(values.std(ddof=1) / np.sqrt(values.size)) if values.size > 1 else np.nan
+
+
+@checked_keywords
+@takes_two_walls
+def ensemble(
+    osc: Oscillator | OscillatorFamily,
+    tau: object,
+    v: object,
+    *,
+    until: object = None,
+    impacts: int | None = None,
+    wall: object = None,
+    random: Mapping[str, Any] | None = None,
+    **computing: Any,
+) -> Ensemble:
+    """Orbits of many states, through chatter that completes, rest and lift-off.
+
+    Parameters
+    ----------
+    osc : a model, or a family (`osc.over`), of which each member has its own states. tau, v : states, which broadcast.
+    until : the time up to which orbits are flown; each ends with its first impact after it. impacts : instead, how many
+        are flown of each; a chatter that completes counts as one, some more may be flown.
+    wall : of the states, of a model with two walls.
+    random : "restitution" and "kick", each a function of a numpy Generator and a size: the restitution of each impact,
+        and a velocity added after it (a result < 0 is turned back); "generator" or a seed for them.
+    computing : `executor`, `output`, as for `sweep`; without an executor here, by compiled loops on two threads.
+
+    Returns
+    -------
+    Ensemble : the last states, `.first_rest`, `.survival`, `.escape_rate()`, `.averages`.
+
+    Notes
+    -----
+    White noise between impacts is no ensemble of this kind: after a launch from the wall it has no first impact.
+
+    Examples
+    --------
+    >>> ball = Oscillator("1", "1.9*sin(t)", 0, "1/2")
+    >>> found = ensemble(ball, 0, np.linspace(0.1, 3, 200), until=100)
+    >>> bool((found.rests > 0).mean() > 0.5), found.first_rest.shape
+    (True, (200,))
+    """
+    if not isinstance(osc, Oscillator | OscillatorFamily):
+        raise refuse("osc", osc, "an ImpactOscillator, or a family osc.over(...)")
+    if (until is None) == (impacts is None):
+        raise refuse("until", until, "a time, or impacts= in its place")
+    model = osc.osc if isinstance(osc, OscillatorFamily) else osc
+    end = as_float(constant("until", until)) if until is not None else np.inf
+    most = whole("impacts", impacts, 0, 10**9) if impacts is not None else 10**9
+    unknown = sorted(set(computing) - {"executor", "output"})
+    if unknown:
+        raise refuse("option", unknown[0], "executor or output")
+    cases, shape = _cases(osc, (tau, v, wall), random)
+    start = np.concatenate([case[2] for case in cases]) if cases else np.zeros(0)
+    if np.isfinite(end) and start.size and not end > start.max():
+        raise refuse("until", until, f"a time after all starts, the last of which is {start.max():.6g}")
+    require_memory("orbits", (len(COLUMNS), start.size), 8)
+    noise = {name: work for name, work in (random or {}).items() if name != "generator"}
+    work = partial(_flown, model, (end, most), noise)
+    executor = computing.get("executor")
+    with ThreadPool(1) if executor is None else nullcontext(executor) as pool:
+        rows = sweep(work, cases, pool, computing.get("output"))
+    table = np.concatenate([np.asarray(piece) for piece in rows])[: start.size] if cases else np.zeros((0, 9))
+    return _result(model, table, start, shape)
+
+
+def _cases(
+    osc: Any, states: tuple[Any, Any, Any], random: Mapping[str, Any] | None
+) -> tuple[list[Any], tuple[int, ...]]:
+    """Blocks of orbits: numbers of their models, the model of each, tau, v, wall and a seed; and the shape of all."""
+    model, numbers, members = osc, dict[str, Array](), ()
+    if isinstance(osc, OscillatorFamily):
+        model, numbers, members = osc.osc, osc.numbers, osc.shape
+    read, codes = States.read(*states[:2]), wall_codes(model, states[2])
+    shape = np.broadcast_shapes(read.shape, codes.shape, members)
+    columns = [
+        np.broadcast_to(column, shape).ravel()
+        for column in (read.tau.reshape(read.shape), read.v.reshape(read.shape), codes)
+    ]
+    which = np.broadcast_to(np.arange(int(np.prod(members))).reshape(members), shape).ravel()
+    flat = {name: values.ravel() for name, values in numbers.items()}
+    source = (random or {}).get("generator")
+    if source is not None and not isinstance(source, np.random.Generator):
+        source = np.random.default_rng(source)
+    seeds = (np.random.default_rng() if source is None else source).integers(2**63, size=-(-which.size // BLOCK))
+    cases = []
+    for number, begin in enumerate(range(0, which.size, BLOCK)):
+        piece = slice(begin, begin + BLOCK)
+        used, places = np.unique(which[piece], return_inverse=True)
+        some = {name: values[used] for name, values in flat.items()}
+        cases.append(
+            (some, places.ravel(), *(column[piece] for column in columns), int(seeds[number]) if random else 0)
+        )
+    return cases, shape
+
+
+def _result(model: Oscillator, table: Array, start: Array, shape: tuple[int, ...]) -> Ensemble:
+    columns = dict(zip(COLUMNS, table.T[: len(COLUMNS)].reshape(len(COLUMNS), *shape), strict=True))
+    impacts, begun = columns["impacts"].astype(np.int64), start.reshape(shape)
+    with np.errstate(invalid="ignore"):
+        speed = columns["speed"] / np.where(impacts > 0, impacts, np.nan)
+    return Ensemble(
+        columns["tau"],
+        columns["v"],
+        status_array(columns["status"].astype(np.int8)),
+        impacts,
+        columns["rests"].astype(np.int64),
+        columns["first_rest"],
+        columns["resting"],
+        speed,
+        begun,
+        columns["tau"] - begun,
+        columns["wall"].astype(np.int8) if model.upper is not None else None,
+    )
+
+
+def _flown(model: Oscillator, ends: tuple[float, int], noise: Mapping[str, Callable[..., Any]], case: Any) -> Array:
+    """Rows of `COLUMNS` of one block of orbits, filled up to `BLOCK`."""
+    numbers, which, tau, v, walls, seed = case
+    run = _Run(Lives(Members(model, numbers), which, tau, v, walls), ends, noise, seed)
+    run.fly()
+    table = np.full((BLOCK, len(COLUMNS)), np.nan)
+    table[: which.size] = run.table()
+    return table
+
+
+class _Run:
+    """One block of orbits on its way."""
+
+    def __init__(
+        self, lives: Lives, ends: tuple[float, int], noise: Mapping[str, Callable[..., Any]], seed: int
+    ) -> None:
+        self.lives, (self.end, self.most) = lives, ends
+        self.noise, self.generator = noise, np.random.default_rng(seed)
+        size = lives.which.size
+        self.speed = np.zeros(size)
+        if noise:
+            lives.near = SHORT
+
+    def fly(self) -> None:
+        """All impacts that are asked for."""
+        lives = self.lives
+        block = 1 if self.noise else LIFE.block
+        while True:
+            going = np.flatnonzero((lives.status == 0) & (lives.flown < self.most) & (lives.time() < self.end))
+            if not going.size:
+                break
+            count = np.minimum(block, self.most - lives.flown[going])
+            before = {name: getattr(lives, name)[going].copy() for name in ("flown", "rests", "first_rest", "resting")}
+            stretch = lives.advance(count, going)
+            self.speed[going] += np.where(stretch.real, stretch.rows[..., 1], 0.0).sum(axis=1)
+            if np.isfinite(self.end):
+                self._cut(stretch, before)
+            if self.noise:
+                self._disturb(stretch)
+
+    def _disturb(self, stretch: Stretch) -> None:
+        """Random velocities after the impacts that were flown."""
+        lives, at = self.lives, stretch.chosen[stretch.plain]
+        before = np.abs(stretch.rows[stretch.plain, 0, 3])
+        if "restitution" in self.noise:
+            lives.v[at] = before * np.asarray(self.noise["restitution"](self.generator, at.size))
+        if "kick" in self.noise:
+            lives.v[at] = np.abs(lives.v[at] + np.asarray(self.noise["kick"](self.generator, at.size)))
+
+    def _times(self, stretch: Stretch) -> Array:
+        """Times of the impacts of a stretch."""
+        phase, turns, _, _ = stretch.begun
+        with np.errstate(invalid="ignore"):
+            begun = phase + np.where(turns == 0, 0.0, turns * self.lives.unit[stretch.chosen])
+        return np.asarray(begun[:, None] + np.where(stretch.real, stretch.rows[..., 0], 0.0))
+
+    def _cut(self, stretch: Stretch, before: dict[str, Array]) -> None:
+        """Orbits whose time has passed the end go back to their first impact after it."""
+        lives, times = self.lives, self._times(stretch)
+        passed = (times >= self.end) & stretch.real
+        late = np.flatnonzero(passed.any(axis=1))
+        if not late.size:
+            return
+        slot = passed[late].argmax(axis=1)
+        at, rows = stretch.chosen[late], stretch.rows[late, slot]
+        dropped = stretch.real[late] & (np.arange(times.shape[1]) > slot[:, None])
+        self.speed[at] -= np.where(dropped, stretch.rows[late, :, 1], 0.0).sum(axis=1)
+        phase, turns, _, walls = (column[late] for column in stretch.begun)
+        lives.phase[at], lives.turns[at] = lives._split(phase + rows[:, 0], turns, at)
+        lives.v[at], lives.wall[at], lives.status[at] = rows[:, 1], walls ^ rows[:, 11].astype(np.int8), 0
+        for name in ("rests", "first_rest", "resting"):
+            getattr(lives, name)[at] = before[name][late]
+        lives.flown[at] = before["flown"][late] + slot + 1
+
+    def table(self) -> Array:
+        """Rows of `COLUMNS`."""
+        lives = self.lives
+        columns = [
+            lives.time(),
+            lives.v,
+            lives.wall,
+            lives.status,
+            lives.flown,
+            lives.rests,
+            lives.first_rest,
+            lives.resting,
+            self.speed,
+        ]
+        return np.column_stack(columns)

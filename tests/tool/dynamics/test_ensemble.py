@@ -1,0 +1,111 @@
+"""Ensembles beside orbits one by one, a closed form, and the counts of what they count."""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+
+import singimpact as si
+from singimpact.inputs import InputError
+from singimpact.status import Status
+
+BALL = si.ImpactOscillator("1", "1.9*sin(t)", 0, "1/2")
+MODELS = {
+    "a ball": BALL,
+    "linear": si.linear("2.8", 0, "0.8"),
+    "resting": si.linear(2, "0.3", "0.5"),
+    "two walls": si.linear("2.8", "-0.4", "0.6", upper="0.4"),
+    "Duffing": si.ImpactOscillator("x + x**3", "cos(1.7*t)", "0.3", "0.6"),
+    "no clock": si.ImpactOscillator("x - (1 - x**2)*xdot", "0", "-1.5", "0.6"),
+    "plastic": si.linear(2, "0.3", 0),
+}
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_ends_and_rests_are_those_of_each_orbit(name):
+    osc, rng, until, count = MODELS[name], np.random.default_rng(3), 25.0, 12
+    tau, v = rng.uniform(0, 6, count), rng.uniform(0, 1.5, count)
+    v[:3] = 0
+    found = si.ensemble(osc, tau, v, until=until)
+    for index in range(count):
+        orbit = osc.orbit(tau[index], v[index], impacts=200)
+        if found.status[index] == 0:  # the first impact after the end
+            after = np.flatnonzero((orbit.tau >= until) & np.isin(orbit.kind, ("impact", "graze")))[0]
+            assert found.tau[index] == pytest.approx(orbit.tau[after], abs=1e-6)
+            assert found.v[index] == pytest.approx(orbit.v[after], abs=1e-6)
+        ends = orbit.tau[orbit.kind == "complete"]
+        before = ends[ends < until]
+        if before.size:
+            assert found.first_rest[index] == pytest.approx(before[0], abs=1e-7)
+        elif osc.restitution != MODELS["plastic"].restitution:
+            assert found.first_rest[index] > until
+    assert ((found.tau >= until) | (found.status != 0)).all()
+
+
+def test_a_ball_under_gravity_rests_where_the_sum_of_its_impacts_says():
+    v = np.linspace(0.1, 2, 50)
+    found = si.ensemble(si.ImpactOscillator("0", "-2", 0, "1/2"), 0, v, until=10)
+    assert found.first_rest == pytest.approx(2 * v, rel=1e-13)  # v (1 + r + r^2 + ...) with a = -2
+    assert (found.status == Status.sticks).all()
+    assert found.survival.share == pytest.approx(1 - np.arange(51) / 50)
+
+
+def test_impacts_are_as_many_as_asked_for():
+    found = si.ensemble(MODELS["linear"], np.linspace(0, 2, 30), 0.5, impacts=100)
+    assert ((found.impacts >= 100) & (found.impacts <= 101)).all()
+
+
+def test_the_escape_rate_is_that_of_the_survival():
+    rng = np.random.default_rng(0)
+    found = si.ensemble(BALL, rng.uniform(0, 6.28, 4000), rng.uniform(0, 3, 4000), until=300)
+    rate, error = found.escape_rate(after=40)
+    survival = found.survival
+    late = (survival.t > 40) & (survival.t < 200)
+    slope = np.polyfit(survival.t[late], np.log(survival.share[late]), 1)[0]
+    assert -slope == pytest.approx(rate, abs=5 * error)
+    assert error < rate / 20
+
+
+def test_random_restitution_and_kicks_are_those_of_the_seed_whatever_the_executor():
+    tau, v = np.linspace(0, 6, 3000), np.full(3000, 0.8)
+    noise = {
+        "restitution": lambda rng, size: rng.uniform(0.6, 0.8, size),
+        "kick": lambda rng, size: 0.01 * rng.normal(size=size),
+        "generator": 5,
+    }
+    one = si.ensemble(MODELS["linear"], tau, v, until=20, random=noise)
+    with ThreadPoolExecutor(2) as pool:
+        other = si.ensemble(MODELS["linear"], tau, v, until=20, random=noise, executor=pool)
+    assert (one.tau == other.tau).all()
+    assert (one.tau != si.ensemble(MODELS["linear"], tau, v, until=20).tau).all()
+    # restitutions that are all one number are that of the model
+    plain = si.ensemble(MODELS["linear"], tau, v, until=9, random={"restitution": lambda rng, size: np.full(size, 0.8)})  # noqa: ARG005
+    assert plain.tau == pytest.approx(si.ensemble(MODELS["linear"], tau, v, until=9).tau, abs=1e-9)
+
+
+def test_a_family_has_an_orbit_of_each_model():
+    many = BALL.replace(restitution="0.4").over(restitution=np.linspace(0.3, 0.6, 5))
+    found = si.ensemble(many, 0.3, np.full((4, 5), 0.7), until=30)
+    assert found.tau.shape == (4, 5)
+    for index in range(5):
+        alone = si.ensemble(many[index], 0.3, 0.7, until=30)
+        assert found.tau[2, index] == pytest.approx(float(alone.tau), abs=1e-9)
+
+
+def test_results_go_to_files_and_bad_input_is_refused(tmp_path):
+    found = si.ensemble(MODELS["linear"], [0.1, 0.2], 0.5, until=20)
+    found.to_csv(tmp_path / "ends.csv")
+    found.to_npz(tmp_path / "ends.npz")
+    assert np.load(tmp_path / "ends.npz")["tau"].shape == (2,)
+    assert "2 orbits" in repr(found)
+    assert set(found.averages) == {"impacts", "v", "rest"}
+    for change, words in (
+        ({"until": None}, "a time, or impacts="),
+        ({"impacts": 3}, "a time, or impacts="),
+        ({"until": -1}, "a time after all starts"),
+        ({"threads": 2}, "executor or output"),
+    ):
+        with pytest.raises(InputError, match=words):
+            si.ensemble(MODELS["linear"], 0.1, 0.5, **{"until": 5, **change})

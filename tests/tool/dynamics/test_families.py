@@ -1,0 +1,119 @@
+"""Models that differ in numbers, flown together, beside each of them alone; and beside scipy."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import singimpact as si
+from singimpact.inputs import InputError
+from singimpact.status import Status
+
+RNG = np.random.default_rng(2)
+DUFFING = si.ImpactOscillator(
+    "x + b*x**3 + d*xdot", "A*cos(w*t)", "0.1", "0.5", {"b": 1, "d": "0.1", "A": 2, "w": "1.3"}
+)
+LAW = si.ImpactOscillator("x + b*x**3", "A*cos(2*t)", "0.1", "-s*v + v**2/50", {"b": 1, "A": 2, "s": "0.8"})
+FAMILIES = {
+    "linear": (si.linear("2.8", 0, "0.8"), {"omega": (1, 4), "clearance": (-0.3, 0.3), "restitution": (0.3, 0.95)}),
+    "damped": (
+        si.linear(2, 0, "0.8"),
+        {"damping": (0, 1), "stiffness": (0.1, 4), "amplitude": (1, 2), "phase": (0, 6)},
+    ),
+    "two walls": (si.linear("2.8", "-0.5", "0.8", upper="0.5"), {"omega": (1, 4), "upper": (0.3, 0.9)}),
+    "a ball": (si.ImpactOscillator("1", "G*sin(t)", 0, "1/2", {"G": 2}), {"G": (1.2, 4), "restitution": (0.2, 0.8)}),
+    "Duffing": (DUFFING, {"b": (0.2, 4), "d": (0, 0.3), "A": (1, 2), "w": (1, 2)}),
+    "a law": (LAW, {"b": (0.2, 4), "A": (1, 2), "s": (0.5, 0.8)}),
+}
+
+
+def drawn(name, count):
+    """A family, and states: some at rest, slow, and late."""
+    osc, ends = FAMILIES[name]
+    many = osc.over(**{number: RNG.uniform(*pair, count) for number, pair in ends.items()})
+    tau, v = RNG.uniform(-3, 9, (3, count)), np.abs(RNG.normal(0, 1, (3, count)))
+    v[0, :3], v[1, :5], tau[2, 0] = 0, 1e-7, 1e9
+    return many, tau, v
+
+
+@pytest.mark.parametrize("name", FAMILIES)
+def test_each_model_flies_as_it_does_alone(name):
+    many, tau, v = drawn(name, 15)
+    step, ends = many.impact_map(tau, v), many.iterate(tau, v, 20)
+    assert step.tau.shape == ends.v.shape == (3, 15)
+    for row, index in np.ndindex(3, 15):
+        alone = many[index].impact_map(tau[row, index], v[row, index])
+        assert step.status[row, index] == alone.status
+        for field in ("tau", "v", "flight_time", "velocity", "time_error"):
+            value, truth = getattr(step, field)[row, index], getattr(alone, field)
+            kappa = 1 + np.nan_to_num(alone.condition + alone.velocity_condition)
+            assert value == pytest.approx(truth, rel=1e-15 * kappa, abs=1e-15, nan_ok=True)
+        last = many[index].iterate(tau[row, index], v[row, index], 20)
+        assert ends.status[row, index] == last.status
+
+
+@pytest.mark.parametrize("name", ["linear", "Duffing"])
+def test_first_hits_are_those_of_scipy(name):
+    many, _, _ = drawn(name, 6)
+    tau, v = RNG.uniform(0, 3, 6), RNG.uniform(0.3, 1, 6)
+    step = many.impact_map(tau, v)
+    for index in range(6):
+        model = many[index]
+        numbers = {key: float(value.value) for key, value in model.parameters.items()}
+        wall, w = float(model.clearance.value), numbers.get("omega", numbers.get("w"))
+
+        def push(t, y, n=numbers, w=w):
+            return n.get("A", 1.0) * np.cos(w * t) - y[0] - n.get("b", 0.0) * y[0] ** 3 - n.get("d", 0.0) * y[1]
+
+        hit = lambda _, y, wall=wall: y[0] - wall  # noqa: E731
+        hit.terminal, hit.direction = True, -1
+        flown = solve_ivp(
+            lambda t, y, push=push: [y[1], push(t, y)], (tau[index], 60), [wall, v[index]], "DOP853", rtol=1e-12,
+            atol=1e-13, events=hit,
+        )  # fmt: skip
+        assert step.tau[index] == pytest.approx(flown.t_events[0][0], abs=1e-9)
+
+
+def test_a_wrong_number_of_one_member_is_seen():
+    many = si.linear("2.8", 0, "0.8").over(omega=[2.0, 3.0])
+    other = si.linear("2.8", 0, "0.8").over(omega=[2.0, 3.0 + 1e-9])
+    assert many.impact_map(0.1, 0.5).tau[0] == other.impact_map(0.1, 0.5).tau[0]
+    assert many.impact_map(0.1, 0.5).tau[1] != other.impact_map(0.1, 0.5).tau[1]
+
+
+def test_exponents_of_a_family_are_those_of_its_orbits():
+    many = si.linear(4, 0, "0.5").over(omega=[3.9, 4.0, 4.1], restitution=[[0.4], [0.5]])
+    found = many.osc.over(**many.numbers)
+    exponents = si.lyapunov(found, 0.1, 0.5, 2000)
+    assert exponents.exponents.shape == (2, 3, 2)
+    for index in np.ndindex(2, 3):
+        (orbit, *_), omega = (each for each in (many[index].periodic(1, 2), float(many.numbers["omega"][index])))
+        truth = np.sort(np.log(np.abs(orbit.multipliers)))[::-1] / (4 * np.pi / omega)
+        assert exponents.exponents[index] == pytest.approx(truth, abs=2e-3)
+
+
+def test_what_a_family_is_and_what_it_refuses():
+    osc = si.linear("2.8", 0, "0.8")
+    many = osc.over(omega=[2, 3, 4], clearance=[[0], [0.1]])
+    assert (many.shape, many.size, len(many)) == ((2, 3), 6, 2)
+    assert many[1, 2] == osc.replace(omega=4, clearance=0.1)
+    assert many[1].shape == (3,)
+    assert len(list(many)) == 6
+    assert "6 models" in repr(many)
+    for numbers, words in (
+        ({"omega": [2, np.nan]}, "finite numbers only"),
+        ({"omega": [2, 3], "clearance": [1, 2, 3]}, "give arrays that broadcast"),
+        ({"restitution": [0.5, 1.5]}, "numbers above 0, at most 1"),
+        ({"mass": [1, 2]}, "unknown number of the model"),
+        ({}, "names no number of the model"),
+    ):
+        with pytest.raises(InputError, match=words):
+            osc.over(**numbers)
+    with pytest.raises(InputError, match="numbers above the clearance"):
+        si.linear(2, 0, "0.5", upper=1).over(upper=[0.5, -0.5])
+    with pytest.raises(InputError, match="do not broadcast"):
+        many.impact_map([0.1, 0.2], 0.5)
+    with pytest.raises(InputError, match="at which the model has a period"):
+        osc.over(omega=[2, 0]).impact_map(0.1, 0.5)
+    assert (many.impact_map(0.1, 0.5).status == Status.hit).all()
