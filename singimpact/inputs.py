@@ -108,6 +108,7 @@ def nearest(name: str, known: Iterable[str], count: int = 3) -> list[str]:
     return difflib.get_close_matches(name[:200], list(known), n=count, cutoff=0.6)
 
 
+# Other names of what the package names so
 SYNONYMS = {
     "r": "restitution",
     "e": "restitution",
@@ -129,7 +130,6 @@ SYNONYMS = {
     "params": "parameters",
     "rho": "restitution",
 }
-"""Other names of what the package names so."""
 
 
 def meant(name: str, accepted: Iterable[str]) -> str | None:

@@ -14,9 +14,10 @@ from singimpact.store import write_table, written
 
 Array = np.ndarray[Any, Any]
 
+# Fields that say where a result came from, not what it is
 NO_NUMBERS = frozenset({"oscillator", "model", "launch"})
-"""Fields that say where a result came from, not what it is."""
 
+# Dimensions of the numbers of a result, in the units of the model's f and g
 UNITS = {
     "tau": "time",
     "t": "time",
@@ -29,13 +30,12 @@ UNITS = {
     "velocity": "length/time",
     "exponents": "1/time",
 }
-"""Dimensions of the numbers of a result, in the units of the model's f and g."""
 
 
 # One line of words and numbers: fields by name, statuses by theirs, without the types of numpy.
 
+# Numbers of an array that are shown; of a longer one its shape
 MOST_NUMBERS = 6
-"""Numbers of an array that are shown; of a longer one its shape."""
 Words = type[Status] | type[Cause] | type[Wall]
 KINDS: dict[str, Words] = {"status": Status, "cause": Cause, "wall": Wall}
 

@@ -2,28 +2,20 @@
 A map over two numbers
 ======================
 
-Where is the motion chaotic? ``si.sweep`` calls a function for each case, here for 900 pairs of a frequency and a
-clearance. Threads share the work; on a cluster the same call takes a client of Dask.
+Where is the motion chaotic? ``osc.over`` makes a family of 14 400 models, one for each frequency and clearance, and one
+call flies them all.
 """
-
-from concurrent.futures import ThreadPoolExecutor
 
 import matplotlib.pyplot as plt
 import numpy as np
 
 import singimpact as si
 
-omega, clearance = np.linspace(2.2, 3.2, 36), np.linspace(-0.2, 0.2, 25)
-
-
-def exponent(pair):
-    return si.lyapunov(si.linear(*pair, "0.8"), 0.1, 0.5, impacts=200, transient=200).exponents[0]
-
-
-pairs = [(frequency, distance) for distance in clearance for frequency in omega]
-largest = si.sweep(exponent, pairs, executor=ThreadPoolExecutor(2)).reshape(25, 36)
+omega, clearance = np.linspace(1.5, 5, 140), np.linspace(-0.3, 0.5, 100)
+many = si.linear("2.8", 0, "0.8").over(omega=omega, clearance=clearance[:, None])
+largest = si.lyapunov(many, 0, 0.1, impacts=300, transient=300).exponents[..., 0]
 figure, axes = plt.subplots(figsize=(7, 4.4), layout="constrained")
-colours = axes.pcolormesh(omega, clearance, largest, cmap="RdBu_r", vmin=-0.3, vmax=0.3)
+colours = axes.pcolormesh(omega, clearance, largest, cmap="RdBu_r", vmin=-0.4, vmax=0.4)
 figure.colorbar(colours, label="largest Lyapunov exponent", extend="min")
 axes.set(xlabel="frequency $\\omega$ of the force", ylabel="clearance $c$")
 plt.show()
