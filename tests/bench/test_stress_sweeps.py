@@ -29,10 +29,11 @@ from singimpact.bench.stress.table import QUICK
 
 pytestmark = pytest.mark.slow  # seconds together: .ci/check runs them
 
-NO_NUMBER = {"to_toml", "linear", "universal", "read_model", "sweep", "release"}  # models, and work for others
+NO_NUMBER = {"to_toml", "linear", "universal", "read_model", "sweep", "release", "over"}  # models, and work for others
 NO_NUMBER |= {
     "shaken_wall",
     "basins",
+    "ensemble",
     "bifurcation",
     "classify",
     "grown_gamma",

@@ -262,8 +262,9 @@ def test_an_orbit_of_two_impacts_is_isolated_in_its_window() -> None:
     points, boxes = closed_boxes(osc, 2, 2, (Fraction(32, 100), Fraction(38, 100)))
     assert (boxes.complete, len(points)) == (True, 1)
     (orbit,) = osc.periodic(2, 2)
-    assert _lacking(osc, (2, 2), points, [orbit]) == ()
-    (doubt,) = _lacking(osc, (2, 2), points, [])
+    proved = (points, boxes)
+    assert _lacking(osc, (2, 2), proved, "velocities", [orbit]) == ()
+    (doubt,) = _lacking(osc, (2, 2), proved, "velocities", [])
     assert "the list lacks <(2, 2) orbit, unstable: (tau, v) = (0.198629, 0.344181), (1.95592, 0.354193)>" in doubt
 
 
