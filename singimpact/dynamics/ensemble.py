@@ -13,11 +13,9 @@ import numpy as np
 from singimpact.algebra.numbers import Array, as_float, constant
 from singimpact.case_pools import ThreadPool
 from singimpact.cases import sweep
-from singimpact.dynamics.families import OscillatorFamily
+from singimpact.dynamics.families import OscillatorFamily, beside_members
 from singimpact.dynamics.lives import SETTINGS as LIFE, Lives, Stretch
 from singimpact.flights.members import Members
-from singimpact.flights.states import States
-from singimpact.flights.walls import wall_codes
 from singimpact.inputs import checked_keywords, refuse, require_memory, takes_two_walls, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.result import Result
@@ -29,6 +27,8 @@ BLOCK = 2048
 COLUMNS = ("tau", "v", "wall", "status", "impacts", "rests", "first_rest", "resting", "speed")
 # The part of the time on which a_c changes below which chatter is over where its restitution is random
 SHORT = 1e-9
+# What may be random, and between which numbers
+DISTURBED = {"restitution": (0.0, 1.0), "kick": (-np.inf, np.inf)}
 
 
 @dataclass(frozen=True)
@@ -75,7 +75,7 @@ class Ensemble(Result):
     def survival(self) -> Survival:
         """The share of orbits that have not come to rest, at the times after the start at which one does."""
         lasted = np.sort((self.first_rest - self.start).ravel())
-        times, n = np.concatenate([[0.0], lasted[np.isfinite(lasted)]]), lasted.size
+        times, n = np.concatenate([[0.0], lasted[np.isfinite(lasted)]]), max(lasted.size, 1)
         share = 1 - np.searchsorted(lasted, times, side="right") / n
         return Survival(times, share, np.sqrt(share * (1 - share) / n))
 
@@ -93,7 +93,7 @@ class Ensemble(Result):
         count = int(np.count_nonzero(np.isfinite(lasted) & (lasted > begin)))
         time = float(at_risk[at_risk > 0].sum())
         if not time > 0:
-            raise refuse("after", after, f"a time at which orbits go on, below {float(np.max(at_risk + begin)):.6g}")
+            raise refuse("after", after, f"a time below {np.max(at_risk + begin, initial=0):.6g}, where orbits go on")
         return count / time, float(np.sqrt(count)) / time
 
     @property
@@ -113,9 +113,8 @@ class Ensemble(Result):
 
 
 def _mean(values: Array) -> tuple[float, float]:
-    if not values.size:
-        return np.nan, np.nan
-    return float(values.mean()), float(values.std(ddof=1) / np.sqrt(values.size)) if values.size > 1 else np.nan
+    mean = float(values.mean()) if values.size else np.nan
+    return mean, float(values.std(ddof=1) / np.sqrt(values.size)) if values.size > 1 else np.nan
 
 
 @checked_keywords
@@ -162,18 +161,18 @@ def ensemble(
         raise refuse("osc", osc, "an ImpactOscillator, or a family osc.over(...)")
     if (until is None) == (impacts is None):
         raise refuse("until", until, "a time, or impacts= in its place")
-    model = osc.osc if isinstance(osc, OscillatorFamily) else osc
     end = as_float(constant("until", until)) if until is not None else np.inf
     most = whole("impacts", impacts, 0, 10**9) if impacts is not None else 10**9
     unknown = sorted(set(computing) - {"executor", "output"})
     if unknown:
         raise refuse("option", unknown[0], "executor or output")
-    cases, shape = _cases(osc, (tau, v, wall), random)
-    start = np.concatenate([case[2] for case in cases]) if cases else np.zeros(0)
+    noise, generator = _noise_of({} if random is None else random)
+    model, flat, which, columns, shape = beside_members(osc, (tau, v, wall))
+    start = columns[0]
     if np.isfinite(end) and start.size and not end > start.max():
         raise refuse("until", until, f"a time after all starts, the last of which is {start.max():.6g}")
     require_memory("orbits", (len(COLUMNS), start.size), 8)
-    noise = {name: work for name, work in (random or {}).items() if name != "generator"}
+    cases = _cases(flat, which, columns, generator if noise else None)
     work = partial(_flown, model, (end, most), noise)
     executor = computing.get("executor")
     with ThreadPool(1) if executor is None else nullcontext(executor) as pool:
@@ -182,34 +181,30 @@ def ensemble(
     return _result(model, table, start, shape)
 
 
+def _noise_of(random: Any) -> tuple[dict[str, Callable[..., Any]], np.random.Generator]:
+    """The functions that disturb orbits, and the generator of their numbers."""
+    accepted = 'a dict of "restitution" and "kick", functions of a generator and a size, and of "generator", or a seed'
+    noise = {name: work for name, work in random.items() if name != "generator"} if isinstance(random, Mapping) else {}
+    if not isinstance(random, Mapping) or set(noise) - set(DISTURBED) or not all(map(callable, noise.values())):
+        raise refuse("random", random, accepted)
+    try:
+        return noise, np.random.default_rng(random.get("generator"))
+    except (TypeError, ValueError):
+        raise refuse("generator", random["generator"], "a numpy Generator, or a whole number >= 0 as a seed") from None
+
+
 def _cases(
-    osc: Any, states: tuple[Any, Any, Any], random: Mapping[str, Any] | None
-) -> tuple[list[Any], tuple[int, ...]]:
-    """Blocks of orbits: numbers of their models, the model of each, tau, v, wall and a seed; and the shape of all."""
-    model, numbers, members = osc, dict[str, Array](), ()
-    if isinstance(osc, OscillatorFamily):
-        model, numbers, members = osc.osc, osc.numbers, osc.shape
-    read, codes = States.read(*states[:2]), wall_codes(model, states[2])
-    shape = np.broadcast_shapes(read.shape, codes.shape, members)
-    columns = [
-        np.broadcast_to(column, shape).ravel()
-        for column in (read.tau.reshape(read.shape), read.v.reshape(read.shape), codes)
-    ]
-    which = np.broadcast_to(np.arange(int(np.prod(members))).reshape(members), shape).ravel()
-    flat = {name: values.ravel() for name, values in numbers.items()}
-    source = (random or {}).get("generator")
-    if source is not None and not isinstance(source, np.random.Generator):
-        source = np.random.default_rng(source)
-    seeds = (np.random.default_rng() if source is None else source).integers(2**63, size=-(-which.size // BLOCK))
-    cases = []
-    for number, begin in enumerate(range(0, which.size, BLOCK)):
+    flat: Mapping[str, Array], which: Array, columns: list[Array], generator: np.random.Generator | None
+) -> list[Any]:
+    """Blocks of orbits: numbers of their models, the model of each, tau, v, wall and a seed."""
+    blocks, cases = range(0, which.size, BLOCK), []
+    seeds = [0] * len(blocks) if generator is None else generator.integers(2**63, size=len(blocks)).tolist()
+    for begin, seed in zip(blocks, seeds, strict=True):
         piece = slice(begin, begin + BLOCK)
         used, places = np.unique(which[piece], return_inverse=True)
         some = {name: values[used] for name, values in flat.items()}
-        cases.append(
-            (some, places.ravel(), *(column[piece] for column in columns), int(seeds[number]) if random else 0)
-        )
-    return cases, shape
+        cases.append((some, places.ravel(), *(column[piece] for column in columns), seed))
+    return cases
 
 
 def _result(model: Oscillator, table: Array, start: Array, shape: tuple[int, ...]) -> Ensemble:
@@ -259,10 +254,9 @@ class _Run:
         """All impacts that are asked for."""
         lives = self.lives
         block = 1 if self.noise else LIFE.block
-        while True:
-            going = np.flatnonzero((lives.status == 0) & (lives.flown < self.most) & (lives.time() < self.end))
-            if not going.size:
-                break
+        while (
+            going := np.flatnonzero((lives.status == 0) & (lives.flown < self.most) & (lives.time() < self.end))
+        ).size:
             count = np.minimum(block, self.most - lives.flown[going])
             before = {name: getattr(lives, name)[going].copy() for name in ("flown", "rests", "first_rest", "resting")}
             stretch = lives.advance(count, going)
@@ -275,11 +269,19 @@ class _Run:
     def _disturb(self, stretch: Stretch) -> None:
         """Random velocities after the impacts that were flown."""
         lives, at = self.lives, stretch.chosen[stretch.plain]
-        before = np.abs(stretch.rows[stretch.plain, 0, 3])
         if "restitution" in self.noise:
-            lives.v[at] = before * np.asarray(self.noise["restitution"](self.generator, at.size))
+            lives.v[at] = np.abs(stretch.rows[stretch.plain, 0, 3]) * self._drawn("restitution", at.size)
         if "kick" in self.noise:
-            lives.v[at] = np.abs(lives.v[at] + np.asarray(self.noise["kick"](self.generator, at.size)))
+            lives.v[at] = np.abs(lives.v[at] + self._drawn("kick", at.size))
+
+    def _drawn(self, name: str, size: int) -> Array:
+        """Random numbers, of which a function of the caller has made as many as it was asked for."""
+        values, (low, high) = np.asarray(self.noise[name](self.generator, size), float), DISTURBED[name]
+        good = np.isfinite(values) & (low <= values) & (values <= high)
+        if values.shape != (size,) or not good.all():
+            wanted = f"a function that returns {size} finite numbers from {low:g} to {high:g}"
+            raise refuse(name, values.ravel()[:4].tolist(), wanted)
+        return values
 
     def _times(self, stretch: Stretch) -> Array:
         """Times of the impacts of a stretch."""
@@ -300,7 +302,7 @@ class _Run:
         dropped = stretch.real[late] & (np.arange(times.shape[1]) > slot[:, None])
         self.speed[at] -= np.where(dropped, stretch.rows[late, :, 1], 0.0).sum(axis=1)
         phase, turns, _, walls = (column[late] for column in stretch.begun)
-        lives.phase[at], lives.turns[at] = lives._split(phase + rows[:, 0], turns, at)
+        lives.phase[at], lives.turns[at] = lives.split(phase + rows[:, 0], turns, at)
         lives.v[at], lives.wall[at], lives.status[at] = rows[:, 1], walls ^ rows[:, 11].astype(np.int8), 0
         for name in ("rests", "first_rest", "resting"):
             getattr(lives, name)[at] = before[name][late]
@@ -309,15 +311,16 @@ class _Run:
     def table(self) -> Array:
         """Rows of `COLUMNS`."""
         lives = self.lives
-        columns = [
-            lives.time(),
-            lives.v,
-            lives.wall,
-            lives.status,
-            lives.flown,
-            lives.rests,
-            lives.first_rest,
-            lives.resting,
-            self.speed,
-        ]
-        return np.column_stack(columns)
+        return np.column_stack(
+            [
+                lives.time(),
+                lives.v,
+                lives.wall,
+                lives.status,
+                lives.flown,
+                lives.rests,
+                lives.first_rest,
+                lives.resting,
+                self.speed,
+            ]
+        )

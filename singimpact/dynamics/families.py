@@ -148,6 +148,36 @@ class OscillatorFamily:
         return Ends(ends, speeds, status_array(codes), walls if self.osc.upper is not None else None)
 
 
+def beside_members(
+    osc: Oscillator | OscillatorFamily, states: tuple[Any, ...]
+) -> tuple[Oscillator, Mapping[str, Array], Array, list[Array], tuple[int, ...]]:
+    """A model, its numbers along the members, and of each state the member, tau, v and wall; the shape of all.
+
+    Parameters
+    ----------
+    states : tau, v and walls, which broadcast with the members.
+    """
+    model, flat, members = (osc.osc, osc.flat, osc.shape) if isinstance(osc, OscillatorFamily) else (osc, {}, ())
+    read, codes = States.read(*states[:2]), wall_codes(model, states[2])
+    try:
+        shape = np.broadcast_shapes(read.shape, members, codes.shape)
+    except ValueError:
+        raise InputError(
+            f"states of shape {read.shape} and members of shape {members} do not broadcast: give shapes that do"
+        ) from None
+    every = np.arange(int(np.prod(members))).reshape(members)
+    which, *columns = (
+        np.broadcast_to(np.reshape(column, own), shape).ravel()
+        for column, own in (
+            (every, members),
+            (read.tau, read.shape),
+            (read.v, read.shape),
+            (codes, codes.shape),
+        )
+    )
+    return model, flat, which, columns, shape
+
+
 def in_parts(
     osc: Oscillator | OscillatorFamily, states: tuple[Any, ...], work: Callable[..., tuple[Array, ...]]
 ) -> tuple[Array, ...]:
@@ -158,26 +188,14 @@ def in_parts(
     states : tau, v and walls, which broadcast with the members. work : of members, the model of each state, tau, v
         and walls; it returns arrays along the states.
     """
-    model, flat, members = (osc.osc, osc.flat, osc.shape) if isinstance(osc, OscillatorFamily) else (osc, {}, ())
-    codes = wall_codes(model, states[2])
-    read, size = States.read(*states[:2]), int(np.prod(members))
-    try:
-        shape = np.broadcast_shapes(read.shape, members, codes.shape)
-    except ValueError:
-        raise InputError(
-            f"states of shape {read.shape} and members of shape {members} do not broadcast: give shapes that do"
-        ) from None
-    which = np.broadcast_to(np.arange(size).reshape(members), shape).ravel()
-    columns = [
-        np.broadcast_to(np.reshape(column, own), shape).ravel()
-        for column, own in ((read.tau, read.shape), (read.v, read.shape), (codes, codes.shape))
-    ]
+    model, flat, which, columns, shape = beside_members(osc, states)
+    size = osc.size if isinstance(osc, OscillatorFamily) and which.size else 1
     order = np.argsort(which, kind="stable")
     ends = np.searchsorted(which[order], np.arange(0, size + SETTINGS.held, SETTINGS.held))
     result: list[Array] = []
     for piece, (begin, end) in enumerate(zip(ends[:-1].tolist(), ends[1:].tolist(), strict=True)):
         at, first = order[begin:end], piece * SETTINGS.held
-        some = {name: values[first : first + SETTINGS.held] for name, values in flat.items()}
+        some = {name: values[first : first + SETTINGS.held] for name, values in flat.items() if which.size}
         results = work(Members(model, some), which[at] - first, *(column[at] for column in columns))
         result = result or [np.empty((which.size, *item.shape[1:]), item.dtype) for item in results]
         for array, values in zip(result, results, strict=True):

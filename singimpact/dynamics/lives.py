@@ -15,7 +15,7 @@ import numpy as np
 
 from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.expressions import Expression, evaluate, names_in, number, substitute, subtract
-from singimpact.algebra.numbers import Array, as_float
+from singimpact.algebra.numbers import Array
 from singimpact.algebra.rings import DOUBLES
 from singimpact.dynamics.lift_off import next_lift_offs, release
 from singimpact.dynamics.remaining import NAMES, chatter_completes, force_trees, law_coefficients, remaining
@@ -27,7 +27,6 @@ from singimpact.flights.results import Step
 from singimpact.generated.completion import chatter_terms
 from singimpact.inputs import InputError
 from singimpact.oscillator.linear import form_of
-from singimpact.oscillator.moving_number import CLEARANCE
 from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.status import Status
 
@@ -65,6 +64,7 @@ class Pressure:
         self.members, self.over = members, members.over
         self.osc = members.osc.mirrored if above else members.osc
         self.wall = members.numbers.place(int(above))
+        self.place = members.numbers.column(self.wall)
         self.slopes = members.numbers.slope(int(above))
 
     @cached_property
@@ -101,9 +101,8 @@ class Pressure:
             jets = {f"a_d{n}": self.values(self.trees[n], which, tau) for n in (1, 2, 3)}
             trees = force_trees(self.osc.force(self.members.letters), self.wall)
             forces = {name: self.values(trees[name], which, tau) for name in NAMES.values()}
-            laws = self._law
             with np.errstate(all="ignore"):
-                left = sum(reversed(chatter_terms(v=v, lambda_=self.slopes[which], a=a, **jets, **forces, **laws)))
+                left = sum(reversed(chatter_terms(v=v, lambda_=self.slopes[which], a=a, **jets, **forces, **self._law)))
         return np.where((a < 0) & (left >= 0), left, np.nan)
 
     @cached_property
@@ -217,7 +216,7 @@ class Lives:
         self.ends = all(members.over or chatter_completes(item.osc) for item in self.pressures)
         size = which.size
         self.unit = np.where(np.isnan(members.period), np.inf, members.period)[which]
-        self.phase, self.turns = self._split(tau, np.zeros(size))
+        self.phase, self.turns = self.split(tau, np.zeros(size))
         self.v, self.wall = v.astype(float), walls.astype(np.int8)
         self.status, self.flown, self.rests = np.zeros(size, np.int8), np.zeros(size, int), np.zeros(size, int)
         self.first_rest, self.resting = np.full(size, np.inf), np.zeros(size)
@@ -239,14 +238,11 @@ class Lives:
 
     def places(self, which: Any, above: Any) -> Array:
         """x of the walls of members."""
-        members = self.members
-        low = members.over.get(CLEARANCE, np.full(members.size, as_float(members.osc.clearance)))[which]
-        if members.osc.upper is None:
-            return np.asarray(low)
-        high = members.over.get("upper", np.full(members.size, as_float(members.osc.upper)))[which]
-        return np.asarray(np.where(above, high, low))
+        low, high = self.pressures[0].place, -self.pressures[-1].place
+        return np.asarray(np.where(above, high[which], low[which]))
 
-    def _split(self, phase: Array, turns: Array, chosen: Any = slice(None)) -> tuple[Array, Array]:
+    def split(self, phase: Array, turns: Array, chosen: Any = slice(None)) -> tuple[Array, Array]:
+        """Times, phase + turns period, with the phase within a period."""
         unit = self.unit[chosen]
         more = np.where(np.isfinite(unit), np.floor(phase / unit), 0.0)
         return phase - np.where(more == 0, 0.0, more * np.where(np.isfinite(unit), unit, 0.0)), turns + more
@@ -260,15 +256,14 @@ class Lives:
         still = going[begun[2] == 0]
         if still.size:
             self._start(still, self._stop)
-        near = self.near if self.ends else 0.0
         states = begun[0].copy(), begun[2].copy(), begun[3].copy()
         counts = np.where(begun[2] > 0, np.broadcast_to(count, orders.shape)[np.isin(orders, going)], 0)
-        rows, flown, codes = self.members.segments(self.which[going], states, counts, near)
+        rows, flown, codes = self.members.segments(self.which[going], states, counts, self.near if self.ends else 0.0)
         self.flown[going] += flown
         moved = np.flatnonzero(flown)
         last, at = rows[moved, flown[moved] - 1], going[moved]
         self.v[at], self.wall[at] = last[:, 1], last[:, 11].astype(np.int8) ^ self.wall[at]
-        self.phase[at], self.turns[at] = self._split(self.phase[at] + last[:, 0], self.turns[at], at)
+        self.phase[at], self.turns[at] = self.split(self.phase[at] + last[:, 0], self.turns[at], at)
         over = going[codes == PRESSED]
         if over.size:
             self._rest(over)
@@ -300,7 +295,7 @@ class Lives:
             lost = np.isnan(left)
             self.status[at[lost]] = Status.unresolved
             at = at[~lost]
-            self.phase[at], self.turns[at] = self._split(self.phase[at] + left[~lost], self.turns[at], at)
+            self.phase[at], self.turns[at] = self.split(self.phase[at] + left[~lost], self.turns[at], at)
             self.v[at] = 0.0
             self._stop(at, wall)
 
@@ -317,9 +312,8 @@ class Lives:
         self.status[at[ends]] = np.where(np.isnan(phases[ends]), Status.unresolved, Status.sticks)
         at, phases, turns = at[~ends], phases[~ends], turns[~ends] + self.turns[at[~ends]]
         before = self.time(at)
-        beside = np.where(
-            np.isfinite(self.unit[at]), SETTINGS.same * self.unit[at], -1.0
-        )  # nothing comes again without a period
+        # nothing comes again without a period
+        beside = np.where(np.isfinite(self.unit[at]), SETTINGS.same * self.unit[at], -1.0)
         again = (np.abs(phases - self.lifted[at, 0]) <= beside) & (self.lifted[at, 2] == wall)
         self.cycle[at] = np.where(again, turns - self.lifted[at, 1], self.cycle[at])
         self.lifted[at] = np.stack([phases, turns, np.full(at.size, wall)], axis=1)
@@ -331,7 +325,7 @@ class Lives:
         self.status[at] = landed[:, 3].astype(np.int8)
         flies = landed[:, 3] == 0
         at, landed = at[flies], landed[flies]
-        self.phase[at], self.turns[at] = self._split(self.phase[at] + landed[:, 0], self.turns[at], at)
+        self.phase[at], self.turns[at] = self.split(self.phase[at] + landed[:, 0], self.turns[at], at)
         self.v[at], self.wall[at] = landed[:, 1], landed[:, 2].astype(np.int8)
         self.flown[at] += 1
 
@@ -359,8 +353,7 @@ class Lives:
                 continue
             step = impact_map(self.members.side(key[0], wall), key[2], 0.0)
             status = 0 if step.status in (Status.hit, Status.graze) else int(step.status)
-            turned = 0 if step.wall is None else int(step.wall)
-            self._landings[key] = float(step.flight_time), float(step.v), turned ^ wall, status
+            self._landings[key] = float(step.flight_time), float(step.v), int(step.wall or 0) ^ wall, status
 
     def _decide(self, index: int, code: int) -> None:
         """One flight by the impact map, which says what became of it."""
@@ -376,7 +369,7 @@ class Lives:
             self.status[index] = int(step.status) or int(decoded(np.array([code]))[0][0])
             return
         self.flown[index] += 1
-        (self.phase[index],), (self.turns[index],) = self._split(
+        (self.phase[index],), (self.turns[index],) = self.split(
             self.phase[index : index + 1] + float(step.flight_time),
             self.turns[index : index + 1],
             slice(index, index + 1),

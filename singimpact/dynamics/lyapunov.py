@@ -111,9 +111,9 @@ class Lyapunov(Result):
 
     def __repr__(self) -> str:
         if np.ndim(self.impacts):
-            chaotic = self.exponents[..., 0] > 3 * self.error[..., 0]
-            shares = f"{100 * np.mean(chaotic):.3g} % chaotic, {100 * np.mean(self.superstable):.3g} % superstable"
-            return f"Lyapunov({np.size(self.impacts)} orbits: {shares})"
+            positive = self.exponents[..., 0] > 3 * self.error[..., 0]
+            chaotic, resting = (100 * np.sum(mark) / max(np.size(mark), 1) for mark in (positive, self.superstable))
+            return f"Lyapunov({np.size(self.impacts)} orbits: {chaotic:.3g} % chaotic, {resting:.3g} % superstable)"
         if self.superstable:
             return f"Lyapunov(superstable: the orbit comes to rest, {self.impacts} impacts)"
         item = ", ".join(f"{value:.6g} +- {error:.2g}" for value, error in zip(self.exponents, self.error, strict=True))
@@ -159,7 +159,7 @@ def lyapunov(
     [-0.220636, -0.220636]
     """
     if not isinstance(osc, Oscillator | OscillatorFamily):
-        raise refuse("osc", osc, "an ImpactOscillator")
+        raise refuse("osc", osc, "an ImpactOscillator, or a family osc.over(...)")
     flown = whole("impacts", impacts, 1, 10**8)
     before = None if transient is None else whole("transient", transient, 0, 10**8)
     item = lambda *states: exponents_of_states(states, flown, before)  # noqa: E731

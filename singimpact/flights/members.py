@@ -172,18 +172,13 @@ class Members:
         sides = np.zeros(size, np.int8) if walls is None else walls
         if result is None:
             for i in range(size):
-                one, some = (
-                    compiled_model(self.side(int(which[i]), int(sides[i]))),
-                    [item[i : i + 1] for item in states],
-                )
+                one = compiled_model(self.side(int(which[i]), int(sides[i])))
+                some = [column[i : i + 1] for column in states]
                 if kind == entries.VARIATIONS:
                     out[i] = one.variations(*some)[0]
-                elif kind == entries.HITS:
-                    (codes[i],), out[i] = (piece.T[0] if piece.ndim > 1 else piece for piece in one.hits(*some[:2]))
-                else:
-                    (codes[i],), out[i] = (
-                        piece.T[0] if piece.ndim > 1 else piece for piece in one.releases(*some[::2])
-                    )
+                    continue
+                ended = one.hits(*some[:2]) if kind == entries.HITS else one.releases(*some[::2])
+                codes[i], out[i] = ended[0][0], ended[1][:, 0]
             return codes, out.T
 
         def fly(chosen: slice) -> None:

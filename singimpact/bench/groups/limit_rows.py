@@ -18,11 +18,12 @@ import singimpact as si
 from singimpact.algebra.numbers import Array
 from singimpact.bench.drawn import CHATTERING, CLEARANCES, OMEGAS, Draws, States
 from singimpact.bench.fresh import cost
-from singimpact.bench.groups.many_rows import family_of, one_by_one
+from singimpact.bench.groups.many_rows import BALL, family_of, one_by_one
 from singimpact.bench.measuring import Aim, Case, Effort, Method, Row, Timed
 from singimpact.branches.events import PERIOD_DOUBLING
 
 STORED = Path(__file__).parents[1] / "data" / "limits.json"
+TABLE = np.linspace(0, 6, 1000), np.linspace(0.1, 3, 1000)  # states of a ball on a shaken table
 ArrayCall = Callable[[Array, Array], object]
 MOST = 1.5  # a ratio may exceed the stored one by this factor
 # A call that is as much work for a flight from a wall, without another one, and how many of it each may cost.
@@ -256,6 +257,7 @@ def searches(effort: Effort) -> list[Method]:
         _plain("lyapunov", "Duffing, an impact", None, impacts, partial(exponents, impacts, transient=0)),
         _plain("branch", "linear, a point", 500.0, 200, partial(linear_branch, 200)),
         _plain("event_curve", "bouncing ball, a point", None, 200, doubling_curve),
+        _plain("ensemble", "bouncing ball, an impact", 1.0, 50_000, partial(si.ensemble, BALL, *TABLE, impacts=50)),
         _plain("basins", "linear, a pixel", 4.2, pixels**2, lambda: si.basins(two, size=pixels)),
         _plain("manifold", "linear", None, 1, lambda: si.manifold(saddle, v=1)),
         _plain("homoclinic_points", "linear", None, 1, lambda: si.homoclinic_points(chaotic.periodic(1, 1)[0])),

@@ -109,3 +109,28 @@ def test_results_go_to_files_and_bad_input_is_refused(tmp_path):
     ):
         with pytest.raises(InputError, match=words):
             si.ensemble(MODELS["linear"], 0.1, 0.5, **{"until": 5, **change})
+
+
+@pytest.mark.parametrize(
+    ("random", "words"),
+    [
+        ({"restituton": np.random.default_rng}, "random ="),
+        ([np.random.default_rng], "random ="),
+        ({"restitution": 0.5}, "random ="),
+        ({"generator": "x"}, "generator = 'x'"),
+        ({"generator": -1}, "generator = -1"),
+        ({"restitution": lambda _, size: np.full(size, 1.5)}, "2 finite numbers from 0 to 1"),
+        ({"restitution": lambda _, size: np.full(size, np.nan)}, "2 finite numbers from 0 to 1"),
+        ({"restitution": lambda _, size: np.full(size + 1, 0.5)}, "2 finite numbers from 0 to 1"),
+        ({"kick": lambda _, size: np.full(size, np.inf)}, "kick ="),
+    ],
+)
+def test_what_is_random_is_refused_where_it_is_none_of_the_kinds(random, words):
+    with pytest.raises(InputError, match=words):
+        si.ensemble(MODELS["linear"], 0, [1, 2], until=20, random=random)
+
+
+def test_shapes_that_do_not_broadcast_are_refused():
+    for osc, tau in ((MODELS["linear"], [0, 1, 2]), (MODELS["linear"].over(omega=[2, 3, 4]), 0)):
+        with pytest.raises(InputError, match="do not broadcast"):
+            si.ensemble(osc, tau, [1, 2], until=20)
