@@ -12,9 +12,12 @@ from singimpact.cases import sweep as sweep
 from singimpact.certificates.certificate import certify as certify, read_certificate as read_certificate
 from singimpact.contact.points import tangency_points as tangency_points
 from singimpact.dynamics.ensemble import ensemble as ensemble
+from singimpact.dynamics.fit import fit as fit
 from singimpact.dynamics.lyapunov import lyapunov as lyapunov
+from singimpact.dynamics.regions import regions as regions
 from singimpact.dynamics.release_map import release_map as release_map
 from singimpact.dynamics.threshold import threshold as threshold
+from singimpact.flights.derivative import sensitivity as sensitivity
 from singimpact.impact_oscillator import (
     ImpactOscillator as ImpactOscillator,
     linear as linear,

@@ -10,8 +10,9 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from collections.abc import Callable, Collection, Iterable, Sized
+from collections.abc import Callable, Collection, Iterable, Mapping, Sized
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Future, wait
+from contextlib import nullcontext
 from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import Path
@@ -19,11 +20,10 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.case_files import InMemory, kept
-from singimpact.case_journal import Record
+from singimpact.case_files import InMemory, Record, kept
 from singimpact.case_keys import cases_key, function_key
-from singimpact.case_pools import Place, named, place_of
-from singimpact.inputs import Unfinished, checked_keywords, shown
+from singimpact.case_pools import Place, ThreadPool, named, place_of
+from singimpact.inputs import Unfinished, checked_keywords, refuse, shown
 from singimpact.progress import ProgressLine
 from singimpact.store import tell
 
@@ -98,6 +98,23 @@ def sweep(
     except BaseException:
         store.leave()
         raise
+
+
+def in_threads(
+    function: Callable[[Any], Any], cases: Iterable[Any], computing: Mapping[str, Any], workers: int | None = None
+) -> Any:
+    """`sweep` with threads where no executor is named, for cases that are long calls into compiled code.
+
+    Parameters
+    ----------
+    computing : "executor" and "output", as for `sweep`. workers : how many threads; one for each core without it.
+    """
+    unknown = sorted(set(computing) - {"executor", "output"})
+    if unknown:
+        raise refuse("option", unknown[0], "executor or output")
+    executor = computing.get("executor")
+    with ThreadPool(workers) if executor is None else nullcontext(executor) as pool:
+        return sweep(function, cases, pool, computing.get("output"))
 
 
 @dataclass

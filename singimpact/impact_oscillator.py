@@ -61,7 +61,8 @@ class ImpactOscillator(Oscillator):
     # studies of the model as a whole, each documented as a function of `singimpact`
     basins, bifurcation, lyapunov, threshold = Study(), Study(), Study(), Study()
     tangency_points, classify, grown_gamma, release_map = Study(), Study(), Study(), Study()
-    border_orbits, transitions, explore, selftest, ensemble = Study(), Study(), Study(), Study(), Study()
+    border_orbits, transitions, explore, selftest = Study(), Study(), Study(), Study()
+    ensemble, regions, fit, sensitivity = Study(), Study(), Study(), Study()
 
     @with_walls(_at_walls)
     def first_hit(

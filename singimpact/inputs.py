@@ -206,11 +206,6 @@ def with_walls(shared_out: Callable[..., Any]) -> Callable[[Callable[..., R]], F
     return partial(takes_two_walls, how=shared_out)
 
 
-def _may_have_walls(value: object) -> bool:
-    """Whether a value is a model with two walls, or an orbit or an event, which has a model; perhaps a text too."""
-    return hasattr(value, "oscillator") or getattr(value, "upper", None) is not None
-
-
 def require_one_wall(name: str, values: Sequence[Any], named: dict[str, Any]) -> None:
     """Refuse a model with two walls: it would be taken for one with its lower wall alone."""
     for value in (*values[:2], *named.values()):
@@ -241,7 +236,13 @@ def checked_keywords(function: Callable[P, T]) -> Callable[P, T]:
 
     @wraps(function)
     def checked(*values: P.args, **named: P.kwargs) -> T:
-        if guarded and (len(values) <= first or _may_have_walls(values[first]) or "model" in named):
+        # an orbit and an event have a model, and perhaps a text too
+        if guarded and (
+            len(values) <= first
+            or hasattr(values[first], "oscillator")
+            or getattr(values[first], "upper", None) is not None
+            or "model" in named
+        ):
             require_one_wall(name, values, named)
         if callable(mark) and "wall" in named:
             rest: dict[str, Any] = dict(named)

@@ -1,25 +1,14 @@
 """A progress line on a terminal or in a notebook; none if standard error is neither."""
 
-from __future__ import annotations
-
 import os
 import sys
 import time
-from dataclasses import dataclass
 from types import TracebackType
 from typing import Any
 
 from singimpact.notebook import CellLine, in_notebook
 
-
-@dataclass(frozen=True)
-class ProgressSettings:
-    """When a progress line appears."""
-
-    delay: float = 1.0  # s of work before the line appears; the import of rich takes 0.1 s
-
-
-PROGRESS = ProgressSettings()
+DELAY = 1.0  # s of work before the line appears; the import of rich takes 0.1 s
 
 
 def watched() -> bool:
@@ -40,13 +29,13 @@ class ProgressLine:
     ...     line.show(1, 2, "first")
     """
 
-    def __init__(self, delay: float = PROGRESS.delay) -> None:
+    def __init__(self, delay: float = DELAY) -> None:
         self._after = time.monotonic() + delay
         self._watched = watched()
         self._bar: Any = None
         self._task: Any = None
 
-    def __enter__(self) -> ProgressLine:
+    def __enter__(self) -> "ProgressLine":
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:

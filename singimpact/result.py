@@ -1,5 +1,6 @@
 """Ways out of a result: a line of words; names and values, from which JSON, tables, arrays and frames are made."""
 
+import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields, is_dataclass
@@ -101,6 +102,8 @@ class Result:
     __slots__ = ()
     array_axes: ClassVar[Mapping[str, tuple[str, ...]]] = {}
     """Names of the axes of arrays; of an array that is not here, `row` alone, or `row`, `axis_1`, ..."""
+    heads_csv: ClassVar[bool] = False
+    """Whether the field `model` stands in a first line of a file of comma-separated values."""
 
     def as_dict(self) -> dict[str, Any]:
         """The numbers of the result by name: numbers, words, arrays, dictionaries and lists; statuses are words.
@@ -144,8 +147,13 @@ class Result:
         return [dict(zip(columns, row, strict=True)) for row in cells]
 
     def to_csv(self, path: Any) -> None:
-        """Write `table()` as comma-separated values below a line of names. The file appears when it is complete."""
-        write_table(path, {name: as_storable(values).tolist() for name, values in self.table().items()})
+        """Write `table()` as comma-separated values below a line of names. The file appears when it is complete.
+
+        Regions, ensembles and fits begin with "# " and the model as JSON; `ImpactOscillator(**json.loads(line[2:]))`
+        is the model again.
+        """
+        heading = f"# {json.dumps(vars(self)['model'].to_dict())}\n" if self.heads_csv else ""
+        write_table(path, {name: as_storable(values).tolist() for name, values in self.table().items()}, heading)
 
     def to_npz(self, path: Any) -> None:
         """Write the arrays of the result to a file that `numpy.load` reads. It appears when it is complete."""

@@ -54,8 +54,10 @@ def write_text(path: str | Path, text: str) -> None:
         draft.write_text(text, encoding="utf-8", newline="\n")
 
 
-def write_table(path: str | Path, columns: Mapping[str, Iterable[Any]]) -> None:
+def write_table(path: str | Path, columns: Mapping[str, Iterable[Any]], heading: str = "") -> None:
     """Write columns of equal length to a file of comma-separated values, below a line with their names.
+
+    `heading` : lines before it, each with its end.
 
     Examples
     --------
@@ -72,6 +74,7 @@ def write_table(path: str | Path, columns: Mapping[str, Iterable[Any]]) -> None:
     if Path(path).suffix.lower() in (".xlsx", ".xls", ".ods", ".parquet", ".json", ".npz"):
         raise refuse("path", str(path), "a name that ends in .csv: comma-separated values are written")
     with written(path) as draft, draft.open("w", encoding="utf-8", newline="") as stream:
+        stream.write(heading)
         lines = csv.writer(stream, lineterminator="\n")
         lines.writerow(columns)
         lines.writerows(zip(*columns.values(), strict=True))
@@ -180,9 +183,7 @@ def tell(sentence: str) -> None:
     print(f"singimpact: {' '.join(sentence.split())}", file=sys.stderr)
 
 
-@lru_cache(maxsize=64)
-def _tell_once(sentence: str) -> None:
-    tell(sentence)
+_tell_once = lru_cache(maxsize=64)(tell)
 
 
 @lru_cache(maxsize=1)

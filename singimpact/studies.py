@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 from singimpact.algebra.numbers import as_float, as_fraction, constant
 from singimpact.impact_oscillator import ImpactOscillator
 from singimpact.inputs import InputError, checked_keywords, refuse, require_known, takes_two_walls, whole
-from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.model import Oscillator, require_model
 
 if TYPE_CHECKING:
     from singimpact.contact.swans import SwanPoints
@@ -222,7 +222,7 @@ def classify(osc: Oscillator, window: Any = None, between: Any = None, *, wall: 
     from singimpact.surface.classification import classify
 
     tau, t = (None, None) if window is None else _two_ends(window, "((tau_low, tau_high), (t_low, t_high))")
-    _require_model(osc)
+    require_model("osc", osc)
     return classify(osc.seen_from(wall), tau, t, None if between is None else interval(between))
 
 
@@ -257,7 +257,7 @@ def grown_gamma(osc: Oscillator, window: Any = None, tau: Any = None, *, wall: o
     from singimpact.surface.classification import default_window
     from singimpact.surface.curve import STATES, Window
 
-    _require_model(osc)
+    require_model("osc", osc)
     osc = osc.seen_from(wall)
     if not isinstance(window, Window):
         low, high = default_window(osc)[0]
@@ -277,7 +277,7 @@ def _of_models(method: Callable[P, T]) -> Callable[P, T]:
     @wraps(method)
     def study(*values: P.args, **named: P.kwargs) -> T:
         bound = takes.bind(*values, **named)
-        _require_model(bound.arguments["osc"])
+        require_model("osc", bound.arguments["osc"])
         return method(*bound.args, **bound.kwargs)
 
     study.__signature__ = takes  # type: ignore[attr-defined]
@@ -287,11 +287,6 @@ def _of_models(method: Callable[P, T]) -> Callable[P, T]:
 orbit, periodic = _of_models(ImpactOscillator.orbit), _of_models(ImpactOscillator.periodic)
 chatter_limit = _of_models(ImpactOscillator.chatter_limit)
 certified_gamma = _of_models(ImpactOscillator.certified_gamma)
-
-
-def _require_model(osc: Any) -> None:
-    if not isinstance(osc, Oscillator):
-        raise refuse("osc", osc, "an ImpactOscillator")
 
 
 def _two_ends(window: Any, accepted: str) -> tuple[Any, Any]:

@@ -1,6 +1,6 @@
 """Certified enclosures: the ring of real balls (python-flint's arb), and simple zeros of functions refined in it."""
 
-from __future__ import annotations
+from __future__ import annotations  # flint and sympy are loaded when they are used
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """`Certified`: a real number with a radius within which the true value lies, made from a ball."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from fractions import Fraction
 from types import SimpleNamespace
@@ -52,7 +50,7 @@ class Certified:
             return {"value": text_of(self.value, self.digits + 2), "radius": text_of(radius, 3)}
 
     @property
-    def negative(self) -> Certified:
+    def negative(self) -> "Certified":
         """The number times -1.
 
         Examples

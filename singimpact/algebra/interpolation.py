@@ -6,7 +6,7 @@ denominator.  How large the coefficients are is not known, so B grows until ever
 coefficient must agree at another number, which is a root of what is wrong only by chance.
 """
 
-from __future__ import annotations
+from __future__ import annotations  # flint and sympy are loaded when they are used
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass

@@ -105,11 +105,9 @@ class System(Protocol):
 
     def without_zeros(self, place: Place) -> bool:
         """Whether a box is shown to have no zero."""
-        ...
 
     def linearised(self, place: Place, middle: Place) -> tuple[Sequence[Any], Sequence[Sequence[Any]]] | None:
         """Values at the middle of a box, and derivatives over it, a row for each equation."""
-        ...
 
 
 class _Formulas:
@@ -175,7 +173,7 @@ class _Search:
                 smaller = self._cut(box)
                 stack += smaller
                 undecided += [] if smaller else [box]
-            elif decided and not any(self._overlap(decided, other) for other in zeros):
+            elif decided and not any(overlap(decided, other) for other in zeros):
                 zeros.append(decided)
         return IsolatedZeros(tuple(zeros), tuple(undecided + stack), count)
 
@@ -190,7 +188,7 @@ class _Search:
         moved = self._krawczyk(wider)
         if moved is None:
             return None
-        if moved == () or not self._overlap(moved, balls):
+        if moved == () or not overlap(moved, balls):
             return ()
         return self._polished(moved) if self._inside(moved, wider) else None
 
@@ -242,12 +240,12 @@ class _Search:
         return [(*box[:k], ends, *box[k + 1 :]) for ends in ((low, at), (at, high))]
 
     @staticmethod
-    def _overlap(one: Place, other: Place) -> bool:
-        return all(a.overlaps(b) for a, b in zip(one, other, strict=True))
-
-    @staticmethod
     def _inside(one: Place, other: Place) -> bool:
         return all(b.contains_interior(a) for a, b in zip(one, other, strict=True))
+
+
+def overlap(one: Place, other: Place) -> bool:
+    return all(a.overlaps(b) for a, b in zip(one, other, strict=True))
 
 
 # All double zeros in one variable of a function with a parameter, in a window of both.

@@ -4,8 +4,6 @@ sympy multiplies a term together factor by factor and sorts sums by comparing tr
 factors come sorted and the terms are sorted by keys that give sympy's order.  Loads sympy.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import Any
@@ -125,7 +123,7 @@ class _Terms:
     def __eq__(self, other: object) -> bool:
         return isinstance(other, _Terms) and (self.total is other.total or self.keys() == other.keys())
 
-    def __lt__(self, other: _Terms) -> bool:
+    def __lt__(self, other: "_Terms") -> bool:
         return self.keys() < other.keys()
 
     __hash__ = None  # type: ignore[assignment]

@@ -4,8 +4,6 @@ A float means its exact binary value; a string, int, Fraction or sympy Rational 
 a constant expression tree, so ``pi/2.8`` and ``sqrt(2)`` are numbers too.
 """
 
-from __future__ import annotations
-
 import inspect
 import math
 import traceback
@@ -298,12 +296,12 @@ class Letter:
         if parts > LIMITS.characters:
             raise InputError(f"its formula has more than {LIMITS.characters} parts")
 
-    def with_number(self, value: object, build: Callable[[Expression, Expression], Expression]) -> Letter:
+    def with_number(self, value: object, build: Callable[[Expression, Expression], Expression]) -> "Letter":
         """A number built of this one and another."""
         other = _letter(value)
         return Letter(build(self.tree, other.tree), self.parts + other.parts + 1)
 
-    def __getattr__(self, name: str) -> Callable[[], Letter]:
+    def __getattr__(self, name: str) -> "Callable[[], Letter]":
         """A function of the number, under the name by which numpy asks for it."""
         if name.startswith("_"):
             raise AttributeError(name)

@@ -4,7 +4,7 @@ A ring may bring its own by a method `polynomials(variables)`; what such an obje
 here answer.  No polynomial is ever tested for being zero by a tolerance.
 """
 
-from __future__ import annotations
+from __future__ import annotations  # flint and sympy are loaded when they are used
 
 from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction

@@ -3,8 +3,6 @@
 Balls have a file of their own (`balls`), jets too (`jets`).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
@@ -63,12 +61,12 @@ class Angle:
 
     turns: Fraction
 
-    def __mul__(self, factor: Fraction) -> Angle:
+    def __mul__(self, factor: Fraction) -> "Angle":
         return Angle(self.turns * factor)
 
     __rmul__ = __mul__
 
-    def __add__(self, other: Angle) -> Angle:
+    def __add__(self, other: "Angle") -> "Angle":
         return Angle(self.turns + other.turns) if isinstance(other, Angle) else NotImplemented
 
 

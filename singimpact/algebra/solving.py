@@ -1,6 +1,6 @@
 """A number that is sought: by halving, by the secant method, by Newton's method in balls."""
 
-from __future__ import annotations
+from __future__ import annotations  # flint and sympy are loaded when they are used
 
 from collections.abc import Callable
 from fractions import Fraction

@@ -4,7 +4,7 @@ Solvers run on them level by level: `number` is what scalars of the solver are m
 + - * of both are Python's own.
 """
 
-from __future__ import annotations
+from __future__ import annotations  # flint and sympy are loaded when they are used
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, nullcontext

@@ -99,13 +99,9 @@ class States:
         return model(self.family, self.restitution)
 
     def problems(self) -> list[Problem]:
-        """A problem a state."""
-        return [self.problem(tau, v) for tau, v in zip(self.tau.tolist(), self.v.tolist(), strict=True)]
-
-    def problem(self, tau: float, v: float) -> Problem:
-        """A state of this model as a peer takes it."""
-        omega, clearance = OMEGAS[self.family], CLEARANCES[self.family]
-        return Problem(self.family, omega, clearance, self.restitution, tau, v)
+        """A problem a state, as a peer takes it."""
+        numbers = self.family, OMEGAS[self.family], CLEARANCES[self.family], self.restitution
+        return [Problem(*numbers, tau, v) for tau, v in zip(self.tau.tolist(), self.v.tolist(), strict=True)]
 
 
 def _pressed(rng: np.random.Generator, family: str, count: int) -> Array:

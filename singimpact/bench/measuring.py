@@ -16,6 +16,7 @@ import mpmath
 import numpy as np
 
 from singimpact.algebra.numbers import EPSILON
+from singimpact.bench.stress.judging import number
 from singimpact.inputs import InputError
 
 if sys.platform != "win32":
@@ -51,21 +52,9 @@ FULL = Effort()
 QUICK = Effort(quick=True, rounds=3, least=5e-4, once=0.02, fresh=1, judged=40)
 
 
-@dataclass(frozen=True)
-class Judged:
-    """Settings of the comparison of answers with the truth.
-
-    Parameters
-    ----------
-    digits : decimal digits of the comparison, beyond those of any truth.
-    least : relative error that is always allowed: rounding of the answer and of what it is made of (DESIGN, Accuracy).
-    """
-
-    digits: int = 400
-    least: float = 1e-14
-
-
-JUDGED = Judged()
+DIGITS = 400  # decimal digits in which answers are compared with the truth, beyond those of any truth
+# relative error that is always allowed: rounding of the answer and of what it is made of (DESIGN, Accuracy)
+LEAST = 1e-14
 
 
 @dataclass(frozen=True)
@@ -294,7 +283,7 @@ def _row(group: str, case: Case, method: Method, turn: _Turn, timings: tuple[Any
     if case.truth:
         errors = [relative_error(answer, truth) for answer, truth in zip(answers, case.truth, strict=False)]
         conditions = case.conditions or [1.0] * len(errors)
-        least = JUDGED.least if method.epsilon == EPSILON else 0.0
+        least = LEAST if method.epsilon == EPSILON else 0.0
         allowed = [max(least, 10 * kappa * method.epsilon) for kappa in conditions]
         wrong = sum(not off <= most for off, most in zip(errors, allowed, strict=False))
         missed = sum(not off <= case.missed for off in errors)
@@ -321,7 +310,7 @@ def _row(group: str, case: Case, method: Method, turn: _Turn, timings: tuple[Any
 
 
 def relative_error(answer: Any, truth: Any) -> float:
-    """|found/truth - 1|; inf without an answer.
+    """|found/truth - 1| for a truth that is a number, its text or the middle of a ball; inf without an answer.
 
     Examples
     --------
@@ -330,8 +319,8 @@ def relative_error(answer: Any, truth: Any) -> float:
     """
     if answer is None:
         return float("inf")
-    with mpmath.workdps(JUDGED.digits):
-        off = abs(mpmath.mpf(answer) / mpmath.mpf(truth) - 1)
+    with mpmath.workdps(DIGITS):
+        off = abs(mpmath.mpf(answer) / number(truth) - 1)
         return float("inf") if mpmath.isnan(off) else float(off)
 
 

@@ -1,6 +1,7 @@
-"""Random states, flown by the impact map and by the slow one of `bench.truth`: what is wrong, how large the errors are.
+"""Random states of linear and cubic models, beside one wall, between two, or at rest on a plastic one.
 
-A case is a model and some states; it is drawn from its number and the seed alone, so cases run anywhere, in any order.
+Truth: the closed forms and Taylor steps of `truth.first_hit` in balls of 60 digits, which share nothing with the
+package.
 """
 
 from __future__ import annotations
@@ -8,18 +9,20 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import partial
-from math import acos, inf, log2, nan, pi
+from math import acos, inf, pi
 from typing import Any
 
 import flint
 import numpy as np
 
-from singimpact.algebra.numbers import EPSILON, Array
+from singimpact.algebra.numbers import Array
 from singimpact.algebra.precision import balls_at
-from singimpact.bench.stress.launches import CUBIC, Launch
-from singimpact.bench.truth.first_hit import Above, Cubic, Linear, first_hit, first_of_both
+from singimpact.bench.random_rows import COLUMNS, EACH, RandomStates
+from singimpact.bench.stress.flown import hit_trial
+from singimpact.bench.stress.judging import Trial
+from singimpact.bench.stress.launches import BITS, Launch
+from singimpact.bench.truth.first_hit import first_hit
 from singimpact.cases import sweep
-from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.status import Status
 
 
@@ -29,20 +32,17 @@ class Draw:
 
     Parameters
     ----------
-    each : states of a model, which is made once.
     cubic : one case in so many is of the cubic oscillator, whose truth takes a hundred times longer.
-    bits : of the balls for v near 1; small v take more.
     horizon : of the cubic oscillator, which is damped: many flights never return, and the truth follows them slowly.
     tries : draws for a state that grazes, before another model is taken.
-    wrong : a flight time that is off by this part, and by more than a hundred times what is allowed, is a wrong root.
+    allowed, wrong : units of `Trial` that are allowed, and that are a wrong root.
     """
 
-    each: int = 25
     cubic: int = 25
-    bits: int = 320
     horizon: float = 60.0
     tries: int = 12
-    wrong: float = 1e-6
+    allowed: float = 10.0
+    wrong: float = 1000.0
 
 
 DRAW = Draw()
@@ -55,7 +55,9 @@ FAMILIES = {
     "between-walls": (10**9, " between walls", (*REGIMES, "narrow", "wide")),
     "plastic": (2 * 10**9, " with restitution 0", ("anywhere", "pressed", "rising", "falling")),
 }
-COLUMNS = ("status", "time_error", "velocity_error", "wrong", "tau", "v", "depth", "bound")
+State = tuple[float, float]
+UPPER_LAW = 0.7  # restitution of the upper wall
+NEAR_ZERO = 1e-6  # |a_c| where the mass lands, next to which it may be released at once or a period later
 
 
 class Model(Launch):
@@ -65,14 +67,6 @@ class Model(Launch):
     def horizon(self) -> float:
         """Of its flights."""
         return 2000 * pi / self.omega if self.family == "linear" and self.upper is None else DRAW.horizon
-
-    def oscillator(self) -> ImpactOscillator:
-        """The model as a user writes it."""
-        law = None if self.upper is None else "0.7"
-        if self.family == "linear":
-            return linear(self.omega, self.clearance, "0.8", upper=law and (self.upper, law))
-        walls = {"upper": self.upper, "upper_restitution": law}
-        return ImpactOscillator(CUBIC, "cos(omega*t)", self.clearance, "0.8", {"omega": self.omega}, **walls)
 
     @property
     def pull(self) -> flint.arb:
@@ -92,13 +86,9 @@ class Model(Launch):
         rise: float = self.omega * (1 - float(self.pull) ** 2) ** 0.5
         return min(rise / (2 * (self.omega**2 + 2 * third + third**2)), 0.25)
 
-    def back_from_touch(self, tau: float) -> Linear | Cubic:
-        """The flight backwards from a touch of the wall at tau, or of the other wall where there is one."""
-        return (self if self.upper is None else replace(self, wall=1 - self.wall)).motion(-tau, 0.0, -1)
 
-
-def check(count: int, seed: int, executor: Any = None, output: Any = None, family: str = "reference") -> list[Row]:
-    """Fly `count` states, rounded up to whole cases; a row a kind of state.
+def check(count: int, seed: int, executor: Any = None, output: Any = None, family: str = "reference") -> RandomStates:
+    """Fly `count` states, rounded up to whole cases.
 
     Parameters
     ----------
@@ -106,10 +96,9 @@ def check(count: int, seed: int, executor: Any = None, output: Any = None, famil
     family : see `FAMILIES`.
     """
     first = FAMILIES[family][0]
-    numbers = range(first, first - (-count // DRAW.each))
-    table = sweep(partial(case, seed), numbers, executor, output)
-    kinds = [kind_of(number) for number in numbers]
-    return [_row(kind, table, kinds) for kind in dict.fromkeys(kinds)]
+    table = sweep(partial(flown, seed), range(first, first - (-count // EACH)), executor, output)
+    columns = dict(zip(COLUMNS, table.reshape(-1, len(COLUMNS)).T, strict=True))
+    return RandomStates(columns, kind_of, lambda number, launch: str(launches(seed, number)[launch]))
 
 
 def kind_of(number: int) -> str:
@@ -124,34 +113,89 @@ def _family(number: int) -> str:
     return max((first, name) for name, (first, _, _) in FAMILIES.items() if first <= number)[1]
 
 
-def case(seed: int, number: int) -> Array:
-    """An array (states, COLUMNS); errors in units of what is allowed."""
+def launches(seed: int, number: int) -> list[Model]:
+    """The launches of a case, which have one model."""
     force, regime = kind_of(number).split()[:2]
     rng, family = np.random.default_rng([seed, number]), _family(number)
     if family == "plastic":
-        model = Model(force, float(rng.uniform(0.3, 3.5)), float(rng.uniform(-0.7, 0.7)))
-        return np.array(release_rows(model, rng, regime))
-    model, states = _drawn(rng, force, regime, family == "between-walls")
-    tau, v = np.array(states).T
-    wall = None if model.upper is None else model.wall
-    osc: Any = model.oscillator()
-    step = osc.impact_map(tau, v, horizon=model.horizon, wall=wall)
-    walls = np.zeros(len(states)) if step.wall is None else step.wall
-    rows = []
-    for index, (start, speed) in enumerate(states):
-        fields = (step.status, step.flight_time, step.v, walls, step.depth, step.bound)
-        one = [float(np.ravel(field)[index]) for field in fields]
-        rows.append([one[0], *_errors(model, start, speed, one), start, speed, *one[4:]])
+        model, states = _at_rest(rng, force, regime)
+    else:
+        model, states = _drawn(rng, force, regime, family == "between-walls")
+    return [replace(model, tau=tau, v=v) for tau, v in states]
+
+
+def flown(seed: int, number: int) -> Array:
+    """An array (states, COLUMNS) of a case."""
+    drawn = launches(seed, number)
+    trials = (releases if _family(number) == "plastic" else impacts)(drawn)
+    rows = [[number, launch, 0.0, *judged(trial)] for launch, trial in enumerate(trials)]
     return np.array(rows)
 
 
-def _drawn(
-    rng: np.random.Generator, family: str, regime: str, between: bool
-) -> tuple[Model, list[tuple[float, float]]]:
+def judged(trial: Trial) -> tuple[bool, bool, bool, float]:
+    """Whether a state is wrong, unresolved, or undecided by the truth; and its error in units of what is allowed.
+
+    Examples
+    --------
+    >>> judged(Trial("", [1 + 2.0**-50], [1.0], [0.0]))[0], judged(Trial("", [1 + 2.0**-40], [1.0], [0.0]))[0]
+    (False, True)
+    """
+    status, right = trial.status
+    # a touch that no width of a step tells from a miss is a graze to the truth, and may be either
+    unresolved, undecided = status == Status.unresolved, right == Status.graze != status
+    units = 0.0 if unresolved or undecided else trial.units
+    return units > DRAW.wrong, unresolved, undecided, units / DRAW.allowed
+
+
+def impacts(drawn: list[Model]) -> list[Trial]:
+    """Impacts of launches of one model."""
+    model, (tau, v) = drawn[0], np.array([(launch.tau, launch.v) for launch in drawn]).T
+    wall = None if model.upper is None else model.wall
+    step: Any = model.model.impact_map(tau, v, horizon=model.horizon, wall=wall)
+    other = np.zeros(tau.shape, bool) if step.wall is None else step.wall != model.wall
+    # x' up from the wall of the launch
+    restitution = np.where(other ^ bool(model.wall), model.upper_restitution or model.restitution, model.restitution)
+    velocity = np.where(other, step.v, -step.v) / restitution
+    trials = []
+    for launch, *end in zip(drawn, step.status.tolist(), step.flight_time.tolist(), velocity.tolist(), strict=True):
+        with balls_at(launch.bits):
+            trials.append(hit_trial(launch, *end))
+    return trials
+
+
+def releases(drawn: list[Model]) -> list[Trial]:
+    """Releases from rest with restitution 0: where they land, and the release after that."""
+    times = np.array([launch.tau for launch in drawn])
+    step = drawn[0].model.replace(restitution=0).release_map(times)
+    with balls_at(BITS):
+        return [
+            release_trial(launch, int(status), float(landing), float(later))
+            for launch, status, landing, later in zip(drawn, step.status, step.landing, step.tau, strict=True)
+        ]
+
+
+def release_trial(launch: Model, status: int, landing: float, later: float) -> Trial:
+    """The landing and the next release that doubles give.  Call it with the working precision set."""
+    leaves = launch.next_release(flint.arb(launch.tau))
+    motion = launch.motion(leaves, 0.0)
+    true = first_hit(motion, 0.0, launch.horizon, 0.0 if leaves == launch.tau else launch.quiet_after_rest())
+    if true is None:
+        early = status == Status.hit and landing - float(leaves) < launch.horizon
+        return Trial(str(launch), status=(status, int(Status.no_return) if early else status))
+    if status != Status.hit:
+        return Trial(str(launch), status=(status, int(Status.hit)))
+    (time, velocity), lands = true, leaves + true[0]
+    after, moved = launch.next_release(lands), time + abs(motion.variations(time)[0][0] / velocity * leaves)
+    # where a_c is 0 up to the error of the landing, both may be right
+    count = 2 if abs(float(launch.motion(lands, 0.0).at(0)[2])) > NEAR_ZERO else 1
+    return Trial(str(launch), [landing, later][:count], [lands, after][:count], [moved, moved][:count])
+
+
+def _drawn(rng: np.random.Generator, family: str, regime: str, between: bool) -> tuple[Model, list[State]]:
     """A model with one wall or two, and states (tau, v) at one of them."""
     model, gap = (_between if between else _alone)(rng, family, regime)
-    states: list[tuple[float, float]] = []
-    for _ in range(DRAW.tries * DRAW.each):
+    states: list[State] = []
+    for _ in range(DRAW.tries * EACH):
         tau, v = float(rng.uniform(-1, 1) * 2 * pi / model.omega), float(rng.uniform(0.01, 3))
         if regime == "low" and between:
             v = float(10 ** rng.uniform(-150, -3))
@@ -162,7 +206,7 @@ def _drawn(
         elif regime == "wide":
             v *= gap
         states += _grazing(rng, model, tau) if regime == "graze" else [(tau, v)]
-        if len(states) == DRAW.each:
+        if len(states) == EACH:
             return model, states
     return _drawn(rng, family, regime, between)  # few flights of that model touch: another one
 
@@ -187,120 +231,31 @@ def _between(rng: np.random.Generator, family: str, regime: str) -> tuple[Model,
     elif regime == "graze" and rng.random() < 0.5:
         gap = 10 ** rng.uniform(-9, 0)
     upper = float(clearance + gap)
-    return Model(family, omega, float(clearance), upper=upper, wall=int(rng.integers(2))), gap
+    return Model(
+        family, omega, float(clearance), upper=upper, wall=int(rng.integers(2)), upper_restitution=UPPER_LAW
+    ), gap
 
 
-def _grazing(rng: np.random.Generator, model: Model, tau: float) -> Iterator[tuple[float, float]]:
+def _grazing(rng: np.random.Generator, model: Model, tau: float) -> Iterator[State]:
     """A state that a flight run backwards from a touch at tau started from, moved off it by 1e-10 to 1e-4."""
-    with balls_at(DRAW.bits):
-        motion = model.back_from_touch(tau)
-        if not motion.at(0)[2] > 1e-3:
-            return
-        found = first_hit(motion if model.upper is None else Above(motion, model.gap), 0.0, 60.0)
-    if found is not None:
-        v = -float(found[1]) * (1 + float(rng.choice([-1, 1])) * 10 ** rng.uniform(-10, -4))
-        yield tau - float(found[0]), v
+    touched = model if model.upper is None else replace(model, wall=1 - model.wall)
+    hit = touched.before_touch(tau)
+    if hit is not None:
+        v = -float(hit[1]) * (1 + float(rng.choice([-1, 1])) * 10 ** rng.uniform(-10, -4))
+        yield tau - float(hit[0]), v
 
 
-def _errors(model: Model, tau: float, v: float, step: list[float]) -> tuple[float, float, float]:
-    """Errors of flight time and velocity in units of max(1e-14, 10 kappa eps), max(1e-13, 10 kappa eps); 1 if wrong.
-
-    Parameters
-    ----------
-    step : status, flight time, v and wall of the impact that the package has.
-    """
-    status, time, next_v, wall = step[:4]
-    period = 2 * pi / model.omega
-    with balls_at(DRAW.bits + int(4 * max(-log2(v), 0))):
-        motion = model.motion(tau, v)
-        truth = first_of_both(motion, v, model.horizon, model.gap)
-        if truth is None:
-            return 0.0, 0.0, float(status not in (Status.no_return, Status.escaped, Status.unresolved))
-        if status != Status.hit:
-            return 0.0, 0.0, float(status != Status.unresolved)
-        true_wall = model.wall ^ bool(truth[1] > 0)
-        rebound = flint.arb(7 if true_wall else 8) / 10
-        off = float(abs(flint.arb(time) / truth[0] - 1)), float(abs(flint.arb(next_v) / (abs(truth[1]) * rebound) - 1))
-        kappa = _conditions(motion, truth, (abs(tau - period * round(tau / period)), v))
-    allowed = [max(least, 10 * k * EPSILON) for least, k in zip((1e-14, 1e-13), kappa, strict=True)]
-    elsewhere = wall != true_wall or (off[0] > DRAW.wrong and off[0] > 100 * allowed[0])
-    return off[0] / allowed[0], off[1] / allowed[1], float(elsewhere)
-
-
-def _conditions(motion: Any, truth: tuple[Any, Any], state: tuple[float, float]) -> tuple[float, float]:
-    """kappa of the flight time and of the velocity."""
-    # in balls: a return after 1e-188 leaves derivatives that no double holds
-    (time, u), e = truth, motion.at(truth[0])[2]
-    sizes, total = (max(state[0], float(time)), state[1]), [1.0, 1.0]
-    for (z_by, u_by), size in zip(motion.variations(time), sizes, strict=True):
-        time_by = -z_by / u
-        total[0] += float(abs(time_by / time) * size)
-        total[1] += float(abs((u_by + e * time_by) / u) * size)
-    return total[0], total[1]
-
-
-def release_rows(model: Model, rng: np.random.Generator, regime: str) -> list[list[float]]:
-    """Rows as those of `case`, of releases from rest with restitution 0; in place of v the next release."""
+def _at_rest(rng: np.random.Generator, family: str, regime: str) -> tuple[Model, list[State]]:
+    """A model with restitution 0, and times at which its mass rests on the wall."""
+    model = Model(family, float(rng.uniform(0.3, 3.5)), float(rng.uniform(-0.7, 0.7)))
     # a_c is positive before the phase `zero`, and from its opposite on
     turn, zero = 2 * pi / model.omega, acos(float(model.pull)) / model.omega
-    near = 10 ** rng.uniform(-14, -1, DRAW.each)
+    near = 10 ** rng.uniform(-14, -1, EACH)
     phases = {
-        "anywhere": rng.uniform(0, turn, DRAW.each),
-        "pressed": rng.uniform(zero, turn - zero, DRAW.each),
+        "anywhere": rng.uniform(0, turn, EACH),
+        "pressed": rng.uniform(zero, turn - zero, EACH),
         "rising": -zero + near,
         "falling": zero - near,
     }
-    times = phases[regime] + turn * rng.integers(-3, 4, DRAW.each)
-    releases = model.oscillator().replace(restitution=0).release_map(times)
-    with balls_at(DRAW.bits):
-        return [
-            [float(status), *_release_errors(model, tau, float(landing), float(later), int(status)), tau, 0.0, nan, nan]
-            for tau, landing, later, status in zip(times, releases.landing, releases.tau, releases.status, strict=True)
-        ]
-
-
-def _release_errors(model: Model, tau: float, landing: float, later: float, status: int) -> tuple[float, float, float]:
-    """Errors of the landing and of the release after it, in units of what is allowed; 1 if wrong."""
-    leaves = model.next_release(flint.arb(float(tau)))
-    motion = model.motion(leaves, 0.0)
-    truth = first_hit(motion, 0.0, model.horizon, 0.0 if leaves == tau else model.quiet_after_rest())
-    if truth is None:
-        return 0.0, 0.0, float(status == Status.hit and landing - float(leaves) < model.horizon)
-    if status != Status.hit:
-        return 0.0, 0.0, float(status != Status.unresolved)
-    time, lands = float(truth[0]), leaves + truth[0]
-    kappa = 1 + abs(float(motion.variations(truth[0])[0][0] / truth[1] * leaves)) / time
-    allowed = max(1e-14, 10 * EPSILON * (kappa + abs(landing) / time))
-    off = abs(float(flint.arb(landing) - lands)) / time / allowed
-    push, after = float(model.motion(lands, 0.0).at(0)[2]), model.next_release(lands)
-    # where a_c is 0 up to the error of the landing, both may be right
-    late = abs(float(flint.arb(later) - after)) / time / allowed if abs(push) > 1e-6 else 0.0
-    return off, late, float(max(off, late) > 100 and max(off, late) * allowed > DRAW.wrong)
-
-
-@dataclass(frozen=True)
-class Row:
-    """States of one kind: how many, wrong, unresolved; the largest errors in units of what is allowed."""
-
-    kind: str
-    states: int
-    wrong: int
-    unresolved: int
-    time_error: float
-    velocity_error: float
-    open: list[tuple[float, ...]]
-
-
-def _row(kind: str, table: Array, kinds: list[str]) -> Row:
-    rows = table[[index for index, name in enumerate(kinds) if name == kind]].reshape(-1, len(COLUMNS))
-    status, time_error, velocity_error, wrong = rows.T[:4]
-    undecided = rows[status == Status.unresolved, 4:]
-    return Row(
-        kind,
-        len(rows),
-        int(wrong.sum()),
-        len(undecided),
-        float(time_error.max()),
-        float(velocity_error.max()),
-        [tuple(row) for row in undecided.tolist()],
-    )
+    times = phases[regime] + turn * rng.integers(-3, 4, EACH)
+    return model, [(time, 0.0) for time in times.tolist()]

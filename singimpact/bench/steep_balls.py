@@ -1,62 +1,65 @@
-"""Flights of steep families in balls: whether the fixed-step truth holds, and how large the errors of doubles are.
+"""States of steep families enclosed with 20 digits: whether fixed steps agree, and how large the errors of doubles are.
 
-Balls cost a hundred times what the fixed steps cost, so they fly a part of the states.
+Enclosures share no code with the flights in doubles nor with the fixed steps, which they judge. They are judged
+themselves, on some of the states, by the second program and by enclosures with 40 digits, which choose another degree,
+other steps and another precision.
 """
 
 from __future__ import annotations
 
 from concurrent.futures import Executor
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import partial
+from math import isfinite, nan
 from pathlib import Path
 from time import process_time
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-import flint
-import mpmath
 import numpy as np
 
-from singimpact.algebra.numbers import EPSILON, Array
-from singimpact.algebra.precision import balls_at
-from singimpact.bench.steep_states import DRAW, drawn
-from singimpact.bench.truth import enclosed_flight
-from singimpact.bench.truth.enclosed_flight import Refused
+from singimpact.algebra.certified import Certified, from_ball
+from singimpact.algebra.numbers import EPSILON, Array, exact
+from singimpact.bench.steep_states import DRAW, allowed, drawn
 from singimpact.bench.truth.graded_steps import FINENESS, HIT, MISS, UNDECIDED
+from singimpact.bench.truth.hit_in_balls import second_program
 from singimpact.cases import sweep
+from singimpact.certificates.checker import Refused
 from singimpact.impact_oscillator import ImpactOscillator
 from singimpact.status import Status
 
-DIGITS = 20
-DIGITS_WRONG = 1e-19  # relative error of a number of 20 digits, one unit of the last
+FEWER, MORE = 20, 40  # digits
+SECONDS = 2.0  # of CPU for a flight of the second program, which decides every second steep state within that
 LEAST_ERROR = 2.0**-54  # an answer that is exact by chance has no finite ratio of estimate to error
 COLUMNS = (
     "true_status",
     "time_error",
     "velocity_error",
     "step_time_error",
-    "step_velocity_error",
-    "digits_status",
-    "digits_error",
+    "checked",
+    "twice",
     "seconds",
-    "digits_seconds",
+    "more_seconds",
 )
+# of two enclosures of one flight: APART where they end otherwise or no number lies in both
+VERDICTS = AGREE, APART, OPEN = range(3)
 
 
 class Flown(NamedTuple):
-    """A state by its case and launch, what the package and the fixed steps say of it, and whether digits are tried."""
+    """A state by its case and launch, what doubles and fixed steps say, and whether its enclosure is judged itself."""
 
     case: int
     launch: int
     flight_time: float
     velocity: float
     step_time: float
-    step_velocity: float
-    digits: bool
+    checked: bool
+    twice: bool
 
 
 def check(
     columns_: dict[str, Array],
-    sizes: tuple[int, int],
+    sizes: tuple[int, int, int],
     seed: int,
     executor: Executor | None = None,
     output: str | Path | None = None,
@@ -65,16 +68,16 @@ def check(
 
     Parameters
     ----------
-    sizes : how many states are enclosed, and how many of these are also flown with `digits=20`.
+    sizes : how many states are enclosed, and how many of these by the second program too, and with 40 digits too.
     executor, output : as in `singimpact.cases.sweep`.
     """
     total = len(columns_["status"])
     picked = np.random.default_rng([seed, total]).permutation(total)[: sizes[0]]
-    names = ("case", "launch", "flight_time", "velocity", "true_time", "true_velocity")
+    names = ("case", "launch", "flight_time", "velocity", "true_time")
     chosen = zip(*(columns_[name][picked].tolist() for name in names), strict=True)
     states = [
-        Flown(int(number), int(launch), time, velocity, true_time, true_velocity, index < sizes[1])
-        for index, (number, launch, time, velocity, true_time, true_velocity) in enumerate(chosen)
+        Flown(int(number), int(launch), time, velocity, true_time, index < sizes[1], index < sizes[2])
+        for index, (number, launch, time, velocity, true_time) in enumerate(chosen)
     ]
     table = sweep(partial(enclosed, seed), states, executor, output).reshape(-1, len(COLUMNS))
     return summary(
@@ -83,43 +86,73 @@ def check(
 
 
 def enclosed(seed: int, state: Flown) -> Array:
-    """Relative errors of one state against its ball, in the order of COLUMNS; nan where there is nothing to compare."""
+    """The enclosure of one state, in the order of COLUMNS; nan where there is nothing to compare."""
     case = drawn(seed, state.case)
-    osc, tau, v = case.oscillator(), float(case.tau[state.launch]), float(case.v[state.launch])
+    osc, at = case.oscillator(), (float(case.tau[state.launch]), float(case.v[state.launch]))
     row = dict.fromkeys(COLUMNS, np.nan)
-    begin = process_time()
-    try:
-        ball = enclosed_flight.first_hit(osc, tau, v, DRAW.horizon)
-        row["true_status"] = MISS if ball.flight_time is None else HIT
-    except Refused:
-        row["true_status"] = UNDECIDED
-    row["seconds"] = process_time() - begin
-    if row["true_status"] == HIT:
-        row.update(
-            time_error=_off(state.flight_time, ball.flight_time),
-            velocity_error=_off(state.velocity, ball.velocity),
-            step_time_error=_off(state.step_time, ball.flight_time),
-            step_velocity_error=_off(state.step_velocity, ball.velocity),
-        )
-        if state.digits:
-            row.update(_with_digits(osc, (tau, v), ball.flight_time))
+    numbers, row["seconds"] = by_digits(osc, at, FEWER)
+    row["true_status"] = UNDECIDED if numbers is None else HIT if numbers else MISS
+    if numbers:
+        time, velocity = numbers
+        row["time_error"], row["velocity_error"] = _off(state.flight_time, time), _off(state.velocity, velocity)
+        row["step_time_error"] = _off(state.step_time, time)
+    if state.checked:
+        row["checked"] = judged(numbers, _by_second_program(osc, at))
+    if state.twice:
+        more, row["more_seconds"] = by_digits(osc, at, MORE)
+        row["twice"] = judged(numbers, more)
     return np.array([row[name] for name in COLUMNS])
 
 
-def _with_digits(osc: ImpactOscillator, at: tuple[float, float], time: Any) -> dict[str, float]:
-    """The result of `digits=20` for a state whose flight time is known."""
+# Flight time and velocity of a hit; empty where none comes before the horizon, None where that is not decided.
+Numbers = list[Certified] | None
+
+
+def by_digits(osc: ImpactOscillator, at: tuple[float, float], digits: int) -> tuple[Numbers, float]:
+    """Numbers that the package's enclosure shows, and the seconds of CPU that it took."""
     begin = process_time()
-    hit = osc.first_hit(*at, digits=DIGITS, horizon=DRAW.horizon)
+    hit = osc.first_hit(*at, digits=digits, horizon=DRAW.horizon)
     spent = process_time() - begin
-    given = mpmath.nstr(hit.flight_time, 2 * DIGITS)
-    error = _off(given, time) if hit.status == Status.hit else np.nan
-    return {"digits_status": float(hit.status), "digits_error": error, "digits_seconds": spent}
+    # a hit without `certified` has the digits of two precisions that agree: no enclosure, so it decides nothing
+    if hit.status == Status.no_return:
+        return [], spent
+    return None if hit.certified is None else [hit.certified.flight_time, hit.certified.velocity], spent
 
 
-def _off(found: float | str, ball: Any) -> float:
-    """Relative error of a number against a ball, rounded up; nan for no number."""
-    with balls_at(256):
-        return float(abs(flint.arb(found) / ball - 1).upper())
+def _by_second_program(osc: ImpactOscillator, at: tuple[float, float]) -> Numbers:
+    """Numbers that the program that checks certificates shows."""
+    try:
+        ball = second_program(osc, *at, DRAW.horizon, SECONDS)
+    except Refused:
+        return None
+    return [] if ball is None else [from_ball(part, MORE) for part in ball]
+
+
+def judged(one: Numbers, other: Numbers) -> int:
+    """Whether two enclosures of one flight can both be right.
+
+    Examples
+    --------
+    >>> import mpmath
+    >>> near, far = ([Certified(mpmath.mpf(x), mpmath.mpf("0.01"), 3)] for x in ("1.01", "1.05"))
+    >>> [judged(near, other) for other in (near, far, [], None)] == [AGREE, APART, APART, OPEN]
+    True
+    """
+    if one is None or other is None:
+        return OPEN
+    return AGREE if len(one) == len(other) and not any(map(_disjoint, one, other)) else APART
+
+
+def _disjoint(one: Certified, other: Certified) -> bool:
+    """Whether no number lies within both radii."""
+    value = [exact("value", interval.value) for interval in (one, other)]
+    radii: Fraction = sum((exact("radius", interval.radius) for interval in (one, other)), Fraction(0))
+    return abs(value[0] - value[1]) > radii
+
+
+def _off(number: float, true: Certified) -> float:
+    """Relative error of a double; nan of nan."""
+    return float(abs(Fraction(number) / exact("true", true.value) - 1)) if isfinite(number) else nan
 
 
 @dataclass(frozen=True)
@@ -133,17 +166,18 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Enclosures:
-    """Some states against balls.
+    """Some states enclosed.
 
     Parameters
     ----------
-    states, refused : flights that were tried in balls, and that balls did not decide.
-    agree, disagree, worst_step : flights of the fixed steps that end as the balls do, or otherwise, where both decide,
-        and the largest relative error of a flight time of the fixed steps.
+    states, refused : flights that were enclosed, and that no enclosure decides.
+    agree, disagree, worst_step : flights of the fixed steps that end as the enclosures do, or otherwise, where both
+        decide, and the largest relative error of a flight time of the fixed steps.
     worst, worst_velocity : largest error of the package's right hits in units of 10 kappa epsilon; the velocity's is
         nan while flights have no `velocity_condition`.
     time, velocity : the package's `error` and `velocity_error` against the true ones; None while flights have none.
-    digits, digits_wrong, digits_unresolved : flights with `digits=20`.
+    checked, twice : (agree, apart, not decided) of enclosures beside the second program, and beside more digits.
+    seconds, more_seconds : mean CPU time of an enclosure with 20 and with 40 digits.
     """
 
     states: int
@@ -155,11 +189,16 @@ class Enclosures:
     worst_velocity: float
     time: Estimate | None
     velocity: Estimate | None
-    digits: int
-    digits_wrong: int
-    digits_unresolved: int
+    checked: tuple[int, ...]
+    twice: tuple[int, ...]
     seconds: float
-    digits_seconds: float
+    more_seconds: float
+
+    @property
+    def wrong(self) -> bool:
+        """Whether fixed steps or an enclosure are wrong, or an estimate of the error is too small."""
+        below = any(estimate is not None and estimate.below for estimate in (self.time, self.velocity))
+        return bool(self.disagree or self.checked[APART] or self.twice[APART] or below)
 
 
 def summary(columns_: dict[str, Array], balls: dict[str, Array]) -> Enclosures:
@@ -167,12 +206,8 @@ def summary(columns_: dict[str, Array], balls: dict[str, Array]) -> Enclosures:
     decided = (balls["true_status"] != UNDECIDED) & (columns_["true_status"] != UNDECIDED)
     near = (balls["true_status"] == MISS) | (balls["step_time_error"] <= FINENESS.most)
     alike = decided & (balls["true_status"] == columns_["true_status"]) & near
-    allowed = np.maximum(DRAW.wrong, 100 * columns_["condition"] * EPSILON)
-    right = (columns_["status"] == Status.hit) & (balls["time_error"] <= allowed)
-    tried = np.isfinite(balls["digits_status"])
-    hit = balls["digits_status"] == Status.hit
-    open_ = balls["digits_status"] == Status.unresolved
-    bad = hit & ~(balls["digits_error"] <= DIGITS_WRONG) | (tried & ~hit & ~open_)
+    hit = columns_["status"] == Status.hit
+    right = hit & (balls["time_error"] <= allowed(columns_))
     return Enclosures(
         states=len(alike),
         refused=int((balls["true_status"] == UNDECIDED).sum()),
@@ -181,13 +216,12 @@ def summary(columns_: dict[str, Array], balls: dict[str, Array]) -> Enclosures:
         worst_step=_most(balls["step_time_error"]),
         worst=_most((balls["time_error"] / (10 * columns_["condition"] * EPSILON))[right]),
         worst_velocity=_most((balls["velocity_error"] / (10 * columns_["velocity_condition"] * EPSILON))[right]),
-        time=estimate(columns_["error"], balls["time_error"], columns_["status"] == Status.hit),
-        velocity=estimate(columns_["velocity_error"], balls["velocity_error"], columns_["status"] == Status.hit),
-        digits=int(tried.sum()),
-        digits_wrong=int(bad.sum()),
-        digits_unresolved=int(open_.sum()),
-        seconds=float(balls["seconds"].mean()) if len(alike) else np.nan,
-        digits_seconds=float(np.nanmean(balls["digits_seconds"])) if tried.any() else np.nan,
+        time=estimate(columns_["error"], balls["time_error"], hit),
+        velocity=estimate(columns_["velocity_error"], balls["velocity_error"], hit),
+        checked=tuple(int((balls["checked"] == verdict).sum()) for verdict in VERDICTS),
+        twice=tuple(int((balls["twice"] == verdict).sum()) for verdict in VERDICTS),
+        seconds=_mean(balls["seconds"]),
+        more_seconds=_mean(balls["more_seconds"]),
     )
 
 
@@ -210,5 +244,8 @@ def estimate(estimates: Array, true: Array, hit: Array) -> Estimate | None:
 
 
 def _most(values: Array) -> float:
-    known = values[np.isfinite(values)]
-    return float(known.max()) if len(known) else np.nan
+    return float(np.max(values[np.isfinite(values)])) if np.isfinite(values).any() else nan
+
+
+def _mean(values: Array) -> float:
+    return float(np.mean(values[np.isfinite(values)])) if np.isfinite(values).any() else nan

@@ -1,24 +1,25 @@
-"""Families of models with steep layers, each written twice: as text for the package, and as a plain function.
+"""Families of models with steep layers, whose texts the package reads in its way and the truth as Python does.
 
 The texts are in `data/steep_families.toml`. A family's plain function gives x'' from t, x, x' and the numbers of
-`NAMES`, in that order; a test compares it with the text. Its layers say where the acceleration varies on a length of
-about 1/K; `truth.graded_steps` grades its steps by them. The smooth families measure cost; they have no layer.
+`NAMES`, in that order; a test compares it with what the package evaluates. Its layers say where the acceleration varies
+on a length of about 1/K; `truth.graded_steps` grades its steps by them. The smooth families measure cost; they have no
+layer.
 """
 
 import re
 import tomllib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from math import atan, cos, exp, log1p, pi, sin, sqrt, tanh
+from math import pi
 from pathlib import Path
 
 from singimpact.bench.truth.graded_steps import BEYOND, PHASE, POSITION, VELOCITY, Acceleration
+from singimpact.bench.truth.plain_steps import python_function
 
 Numbers = Mapping[str, float]
 Layer = tuple[float, float, float, float, float]  # kind, centre, width, stiffness, spacing
 # a, b: positions of layers; w: velocity of a layer; h, s: height and width of the peak of Stribeck's friction
 NAMES = ("mu", "K", "a", "b", "w", "h", "s", "A", "omega", "damping")
-MU, K, A_X, B_X, W, H, S, A, OMEGA, DAMPING = range(len(NAMES))
 
 
 @dataclass(frozen=True)
@@ -50,8 +51,7 @@ class Family:
     @property
     def parameters(self) -> tuple[str, ...]:
         """The names of `NAMES` that occur in the text."""
-        found = set(re.findall(r"[A-Za-z]\w*", f"{self.force} {self.forcing}"))
-        return tuple(name for name in NAMES if name in found)
+        return tuple(name for name in NAMES if name in words(f"{self.force} {self.forcing}"))
 
     def layers_of(self, n: Numbers) -> list[Layer]:
         """Rows of `Motion.layers` from the numbers of a model."""
@@ -72,98 +72,38 @@ LAYERS: dict[str, Callable[[Numbers], Layer]] = {
 }
 
 
-def wave(t: float, p: Sequence[float]) -> float:
-    """A cos(omega t)."""
-    return p[A] * cos(p[OMEGA] * t)
-
-
-def square_wave(t: float, p: Sequence[float]) -> float:
-    """A wave that switches steeply."""
-    return p[A] * tanh(p[K] * cos(p[OMEGA] * t))
-
-
-def pulsed(t: float, p: Sequence[float]) -> float:
-    """A wave with a pulse, by half the angle: cos - 1 loses digits at the pulse."""
-    return p[A] * cos(p[OMEGA] * t) + p[MU] * exp(-2 * (p[K] * sin(p[OMEGA] * t / 2)) ** 2)
-
-
-def step_at(x: float, place: float, p: Sequence[float]) -> float:
-    """From 0 to 2 across a place."""
-    return 1 + tanh(p[K] * (x - place))
-
-
-def bump_at(x: float, place: float, p: Sequence[float]) -> float:
-    """1 at a place, and 0 beside it."""
-    return exp(-((p[K] * (x - place)) ** 2))
-
-
-def stribeck(u: float, p: Sequence[float]) -> float:
-    """Friction that is larger at small velocities."""
-    return p[MU] * tanh(p[K] * u) * (1 + p[H] * exp(-((u / p[S]) ** 2)))
-
-
-def logistic(x: float, p: Sequence[float]) -> float:
-    """From 0 to 1 across a, as half of 1 + tanh of half the argument."""
-    return 0.5 * (1 + tanh(0.5 * p[K] * (x - p[A_X])))
-
-
-def softplus(x: float, p: Sequence[float]) -> float:
-    """log(1 + exp(K (x - a)))/K without an overflow."""
-    y = p[K] * (x - p[A_X])
-    return (max(y, 0.0) + log1p(exp(-abs(y)))) / p[K]
-
-
-def rational(y: float, p: Sequence[float]) -> float:
-    """1/(1 + K^2 y^2)."""
-    return 1 / (1 + (p[K] * y) ** 2)
-
-
-ACCELERATIONS: dict[str, Acceleration] = {
-    "friction": lambda t, x, u, p: wave(t, p) - x - p[MU] * tanh(p[K] * u),
-    "stop": lambda t, x, _u, p: wave(t, p) - x - p[MU] * step_at(x, p[A_X], p),
-    "bump": lambda t, x, _u, p: wave(t, p) - x - p[MU] * bump_at(x, p[A_X], p),
-    "pulse": lambda t, x, u, p: pulsed(t, p) - x - p[DAMPING] * u,
-    "square wave": lambda t, x, u, p: square_wave(t, p) - x - p[DAMPING] * u,
-    "logistic": lambda t, x, _u, p: wave(t, p) - x - p[MU] * logistic(x, p),
-    "softplus": lambda t, x, _u, p: wave(t, p) - x - p[MU] * softplus(x, p),
-    "atan friction": lambda t, x, u, p: wave(t, p) - x - p[MU] * atan(p[K] * u),
-    "rounded corner": lambda t, x, _u, p: wave(t, p) - x - p[MU] * sqrt((x - p[A_X]) ** 2 + 1 / (p[K] * p[K])),
-    "rational bump": lambda t, x, _u, p: wave(t, p) - x - p[MU] * rational(x - p[A_X], p),
-    "rational pulse": lambda t, x, _u, p: wave(t, p) + p[MU] * rational(sin(p[OMEGA] * t / 2), p) - x,
-    "Stribeck": lambda t, x, u, p: wave(t, p) - x - stribeck(u, p),
-    "three layers": lambda t, x, u, p: pulsed(t, p) - x - p[MU] * (tanh(p[K] * u) + 2 * step_at(x, p[A_X], p)),
-    "exponential": lambda t, x, _u, p: wave(t, p) - x - p[MU] * exp(p[K] * (x - p[A_X])),
-    "friction, square wave": lambda t, x, u, p: square_wave(t, p) - x - p[MU] * tanh(p[K] * u),
-    "two stops": lambda t, x, _u, p: wave(t, p) - x - p[MU] * (tanh(p[K] * (x - p[A_X])) + tanh(p[K] * (x - p[B_X]))),
-    "velocity bump": lambda t, x, u, p: wave(t, p) - x - p[MU] * u * bump_at(u, p[W], p),
-    "damped beyond": lambda t, x, u, p: wave(t, p) - x - p[MU] * u * step_at(x, p[A_X], p),
-    "cubic, friction, bump": lambda t, x, u, p: (
-        wave(t, p) - x - x * x * x - p[MU] * (tanh(p[K] * u) + 5 * bump_at(x, p[A_X], p))
-    ),
-    "pendulum, stop": lambda t, x, _u, p: wave(t, p) - x / 2 - sin(x) - p[MU] * step_at(x, p[A_X], p),
-    "Duffing": lambda t, x, u, p: wave(t, p) - x - p[DAMPING] * u - p[MU] * x * x * x,
-    "van der Pol": lambda t, x, u, p: wave(t, p) - x + p[MU] * (1 - x * x) * u,
-    "pendulum": lambda t, x, u, p: wave(t, p) - p[DAMPING] * u - sin(x),
-    "exp(x) - 1": lambda t, x, u, p: wave(t, p) - p[DAMPING] * u - exp(x) + 1,
-    "x/(1 + x^2)": lambda t, x, _u, p: wave(t, p) - x / 4 - p[MU] * x / (1 + x * x),
-    "x sqrt(1 + x^2)": lambda t, x, u, p: wave(t, p) - p[DAMPING] * u - x * sqrt(1 + x * x),
-    "log(2 + x^2)": lambda t, x, _u, p: wave(t, p) - x / 4 - p[MU] * log1p(1 + x * x),
-    "Mathieu, Duffing": lambda t, x, u, p: (
-        wave(t, p) - (1 + p[A] * cos(2 * p[OMEGA] * t) / 2) * x - p[DAMPING] * u - p[MU] * x * x * x
-    ),
-    "stiffness pulse": lambda t, x, _u, p: wave(t, p) - x * (1 + p[MU] * exp(-2 * (p[K] * sin(p[OMEGA] * t / 2)) ** 2)),
-    "swinging stop": lambda t, x, _u, p: (
-        p[A] * sin(p[OMEGA] * t) - x - p[MU] * step_at(x, p[A_X], p) * (1 + cos(p[OMEGA] * t) / 2)
-    ),
-    "no clock, friction": lambda _t, x, u, p: p[MU] * (1 - x * x) * u - x - p[A] * tanh(p[K] * u) / 10,
+# terms that lose digits or overflow in doubles, and the same numbers without that
+ACCURATE = {
+    "K**2*(cos(omega*t) - 1)": "-2*(K*sin(omega*t/2))**2",
+    "log(1 + exp(K*(x - a)))": "(max(K*(x - a), 0.0) + log1p(exp(-abs(K*(x - a)))))",
 }
+
+
+def acceleration(force: str, forcing: str) -> Acceleration:
+    """g - f as a plain Python function of t, x, x' and the numbers of `NAMES`, from the texts as Python reads them.
+
+    Examples
+    --------
+    >>> acceleration("x + mu*xdot", "A*cos(omega*t)")(0.0, 1.0, 2.0, [0.5, 0, 0, 0, 0, 0, 0, 4.0, 1.0, 0])
+    2.0
+    """
+    text = f"{forcing} - ({force})"
+    for term, accurate in ACCURATE.items():
+        text = text.replace(term, accurate)
+    numbers = "".join(f"    {name} = p[{at}]\n" for at, name in enumerate(NAMES) if name in words(text))
+    return python_function("acceleration", f"def acceleration(t, x, xdot, p):\n{numbers}    return {text}\n")
+
+
+def words(text: str) -> set[str]:
+    """The names that occur in a text."""
+    return set(re.findall(r"[A-Za-z]\w*", text))
 
 
 def _families(kind: str) -> tuple[Family, ...]:
     return tuple(
         Family(
             **fields | {"strength": tuple(fields["strength"]), "layers": tuple(fields.get("layers", ()))},
-            acceleration=ACCELERATIONS[fields["name"]],
+            acceleration=acceleration(fields["force"], fields["forcing"]),
         )
         for fields in TEXTS[kind]
     )

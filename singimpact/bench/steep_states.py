@@ -1,19 +1,16 @@
-"""Random states of steep families, flown by `first_hit` and by a truth in small fixed steps: which impacts are wrong.
-
-A case is a model and some states; it is drawn from its number and the seed alone, so cases run anywhere, in any order.
-"""
+"""Random states of steep families, whose first hits in doubles are judged by small fixed steps."""
 
 from concurrent.futures import Executor
 from dataclasses import dataclass
-from functools import lru_cache, partial
+from functools import partial
 from math import pi
 from pathlib import Path
-from time import process_time
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from singimpact.algebra.numbers import EPSILON, Array
+from singimpact.bench.random_rows import EACH, RandomStates
 from singimpact.bench.steep_families import FAMILIES, NAMES, PARAMETRIC, SMOOTH, STEEP, Family
 from singimpact.bench.truth import graded_steps
 from singimpact.bench.truth.graded_steps import HIT, MISS, PHASE, Motion
@@ -30,25 +27,20 @@ class DrawSettings:
 
     Parameters
     ----------
-    each : states of a model, which is made once.
     smooth : one case in so many is of a smooth family; they come on top of the steep ones.
     horizon : of each flight, in units of time.
     wrong : least relative error of a flight time that is wrong; 100 kappa epsilon counts where it is larger.
-    mild : steepness up to which `unresolved` is counted apart.
     """
 
-    each: int = 25
     smooth: int = 11
     horizon: float = 30.0
     wrong: float = 1e-9
-    mild: float = 1e3
 
 
 DRAW = DrawSettings()
 PARAMETRIC_FROM = 10**9  # the number of the first case of the parametric families
 COLUMNS = (
     "family",
-    "steepness",
     "status",
     "flight_time",
     "velocity",
@@ -64,8 +56,6 @@ COLUMNS = (
     "v",
     "case",
     "launch",
-    "seconds",
-    "true_seconds",
 )
 
 
@@ -93,12 +83,7 @@ class Case(NamedTuple):
         """The model as the truth flies it."""
         parameters = np.array([self.numbers[name] for name in NAMES])
         layers = np.array(self.family.layers_of(self.numbers), dtype=float).reshape(-1, 5)
-        return Motion(_compiled(FAMILIES.index(self.family)), parameters, layers, self.clearance)
-
-
-@lru_cache(maxsize=len(FAMILIES))
-def _compiled(index: int) -> Any:
-    return graded_steps.compiled(FAMILIES[index].acceleration)
+        return Motion(graded_steps.compiled(self.family.acceleration), parameters, layers, self.clearance)
 
 
 def family_of(number: int) -> Family:
@@ -109,7 +94,7 @@ def family_of(number: int) -> Family:
     return SMOOTH[turn % len(SMOOTH)] if place == DRAW.smooth - 1 else STEEP[(number - turn) % len(STEEP)]
 
 
-def drawn(seed: int, number: int, each: int = DRAW.each) -> Case:
+def drawn(seed: int, number: int, each: int = EACH) -> Case:
     """The case of a number; layers lie where its flights go."""
     return drawn_of(family_of(number), np.random.default_rng([seed, number]), each)
 
@@ -150,22 +135,17 @@ def flown(seed: int, number: int) -> Array:
     """An array (states, COLUMNS) of a case: the package's flights beside the true ones."""
     case = drawn(seed, number)
     osc, motion = case.oscillator(), case.motion()
-    begin = process_time()
     hit = osc.first_hit(case.tau, case.v, horizon=DRAW.horizon)
-    spent = (process_time() - begin) / len(case.v)
     table = np.full((len(case.v), len(COLUMNS)), np.nan)
     put = {name: table[:, index] for index, name in enumerate(COLUMNS)}
     for name in ("status", "flight_time", "velocity", "condition", "velocity_condition", "error", "velocity_error"):
         values = getattr(hit, name, None)
         if values is not None:
             put[name][:] = values
-    put["family"][:], put["steepness"][:] = FAMILIES.index(case.family), case.numbers["K"]
-    put["tau"][:], put["v"][:], put["seconds"][:] = case.tau, case.v, spent
+    put["family"][:], put["tau"][:], put["v"][:] = FAMILIES.index(case.family), case.tau, case.v
     put["case"][:], put["launch"][:] = number, np.arange(len(case.v))
     for index, (tau, v) in enumerate(zip(case.tau.tolist(), case.v.tolist(), strict=True)):
-        begin = process_time()
         true = graded_steps.first_hit(motion, tau, v, DRAW.horizon)
-        put["true_seconds"][index] = process_time() - begin
         put["true_status"][index], put["crossed"][index] = true.status, true.crossed
         put["true_time"][index], put["true_velocity"][index] = true.flight_time, true.velocity
     return table
@@ -177,19 +157,29 @@ def check(
     executor: Executor | None = None,
     output: str | Path | None = None,
     parametric: bool = False,
-) -> dict[str, Array]:
-    """Fly `count` steep states, rounded up to whole cases, and a tenth more smooth ones; a named column each.
+) -> RandomStates:
+    """Fly `count` steep states, rounded up to whole cases, and a tenth more smooth ones.
 
     Parameters
     ----------
     executor, output : as in `singimpact.cases.sweep`; an interrupted check goes on.
     parametric : fly the parametric families alone, a quarter of the states each.
     """
-    cases = -(-count // DRAW.each)
+    cases = -(-count // EACH)
     first, more = (PARAMETRIC_FROM, 0) if parametric else (0, cases // (DRAW.smooth - 1))
     numbers = range(first, first + cases + more)
     table = sweep(partial(flown, seed), numbers, executor, output).reshape(-1, len(COLUMNS))
-    return {name: table[:, index] for index, name in enumerate(COLUMNS)}
+    columns = dict(zip(COLUMNS, table.T, strict=True))
+    columns["wrong"] = wrong(columns)
+    columns["unresolved"] = columns["status"] == Status.unresolved
+    columns["undecided"] = columns["true_status"] == graded_steps.UNDECIDED
+    columns["ratio"] = relative_error(columns) / allowed(columns)
+    return RandomStates(columns, lambda number: family_of(number).name, lambda *at: drawn(seed, at[0]).text(at[1]))
+
+
+def allowed(columns_: dict[str, Array]) -> Array:
+    """Relative error of a flight time up to which it is right: max(1e-9, 100 kappa epsilon)."""
+    return np.maximum(DRAW.wrong, 100 * columns_["condition"] * EPSILON)
 
 
 def relative_error(found: dict[str, Array]) -> Array:
@@ -207,54 +197,8 @@ def wrong(columns_: dict[str, Array]) -> Array:
     Wrong: a hit whose relative error exceeds max(1e-9, 100 kappa epsilon), or whose error or kappa is no number; a hit
     where the truth has none; any status but `hit` and `unresolved` where the truth hits before the horizon.
     """
-    allowed = np.maximum(DRAW.wrong, 100 * columns_["condition"] * EPSILON)
     hit, true = columns_["status"] == Status.hit, columns_["true_status"]
-    exact = relative_error(columns_) <= allowed
+    exact = relative_error(columns_) <= allowed(columns_)
     ended = (columns_["status"] == Status.no_return) | (columns_["status"] == Status.escaped)
     right = np.where(true == HIT, hit & exact, ended)
     return np.asarray(~right & (columns_["status"] != Status.unresolved) & ((true == HIT) | (true == MISS)))
-
-
-@dataclass(frozen=True)
-class Row:
-    """States of one family: counts, the largest relative error of a flight time that is not wrong, mean seconds."""
-
-    family: str
-    steep: bool
-    states: int
-    crossed: int
-    wrong: int
-    unresolved: int
-    unresolved_steep: int
-    undecided: int
-    worst_error: float
-    seconds: float
-    true_seconds: float
-
-
-def rows(columns_: dict[str, Array]) -> list[Row]:
-    """A row a family that was flown."""
-    bad, error = wrong(columns_), relative_error(columns_)
-    open_ = columns_["status"] == Status.unresolved
-    mild = columns_["steepness"] <= DRAW.mild
-    undecided = columns_["true_status"] == graded_steps.UNDECIDED
-    table = []
-    for index in np.unique(columns_["family"]).astype(int):
-        here = columns_["family"] == index
-        fine = error[here & ~bad & np.isfinite(error)]
-        table.append(
-            Row(
-                FAMILIES[index].name,
-                FAMILIES[index].steep,
-                int(here.sum()),
-                int(columns_["crossed"][here].sum()),
-                int(bad[here].sum()),
-                int((open_ & mild)[here].sum()),
-                int((open_ & ~mild)[here].sum()),
-                int(undecided[here].sum()),
-                float(fine.max(initial=0.0)),
-                float(columns_["seconds"][here].mean()),
-                float(columns_["true_seconds"][here].mean()),
-            )
-        )
-    return table

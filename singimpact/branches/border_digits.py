@@ -7,9 +7,10 @@ x'' = a_c < 0 where x' = 0 at the wall; so each fate of (2) belongs to an open s
 lies a value with neither: its impacts are infinitely many and accumulate at the zero.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import islice
 from math import ceil, log10
 from typing import Any, NamedTuple
 
@@ -90,8 +91,13 @@ class DigitOrbits:
         model = self.found.releases.model(value)
         with balls_at(self.bits):
             start, end = self._zeros(model)
+            zero, rows = end.moved(self.bits), list[Landing]()
             fly = self._in_balls if enclosable(model) else self._in_digits
-            return fly(model, start, end.moved(self.bits), count)
+            for time, v in islice(fly(model, start), count):
+                rows.append(Landing((time - zero).mid(), v))
+                if rows[-1].sigma > 0:
+                    break
+            return rows
 
     def missed(self, impacts: int, value: Fraction) -> Any | None:
         """v less the first two terms of gamma so many impacts after the orbit came back; None where it has passed."""
@@ -120,33 +126,23 @@ class DigitOrbits:
             raise ArithmeticError("a zero of a_c is not isolated")
         return found[0], found[1]
 
-    def _in_balls(self, model: Oscillator, start: ContactZero, end: Any, count: int) -> list[Landing]:
-        flow, rows = AnalyticFlow(model, self.bits), list[Landing]()
+    def _in_balls(self, model: Oscillator, start: ContactZero) -> Iterator[tuple[Any, Any]]:
+        """Time and velocity after each impact."""
+        flow = AnalyticFlow(model, self.bits)
         time, v, removed = start.moved(self.bits).mid(), flow.number(Fraction(0)), start.order + 2
-        while len(rows) < count:
-            hit = flow.first_hit(time, v, removed=removed)
-            if hit is None or hit.time is None:
-                break
+        hit = flow.first_hit(time, v, removed=removed)
+        while hit is not None and hit.time is not None:
             time, v, removed = (time + hit.time).mid(), (-flow.r * hit.velocity).mid(), 1
-            rows.append(Landing((time - end).mid(), v))
-            if rows[-1].sigma > 0:
-                break
-        return rows
+            yield time, v
+            hit = flow.first_hit(time, v, removed=removed)
 
-    def _in_digits(self, model: Oscillator, start: ContactZero, end: Any, count: int) -> list[Landing]:
-        rows: list[Landing] = []
-        tau: Any = start.tau
-        v: Any = 0
-        while len(rows) < count:
-            step = impact_map(model, tau, v, digits=self.digits)
-            if step.status != Status.hit:
-                break
-            tau, v = step.tau, step.v
-            time, speed = (self.balls.rational(exact("tau", coordinate)) for coordinate in (tau, v))
-            rows.append(Landing((time - end).mid(), speed))
-            if rows[-1].sigma > 0:
-                break
-        return rows
+    def _in_digits(self, model: Oscillator, start: ContactZero) -> Iterator[tuple[Any, Any]]:
+        """Time and velocity after each impact, by mpmath numbers."""
+        step = impact_map(model, start.tau, 0, digits=self.digits)
+        while step.status == Status.hit:
+            time, v = (self.balls.rational(exact("tau", coordinate)) for coordinate in (step.tau, step.v))
+            yield time, v
+            step = impact_map(model, step.tau, step.v, digits=self.digits)
 
 
 def in_digits(returned: Return, scale: float, digits: int) -> InDigits | None:

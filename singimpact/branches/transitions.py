@@ -5,8 +5,6 @@ flights is launched at rest.  So orbits are listed between neighbouring transiti
 graze, fold or double.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
@@ -118,7 +116,7 @@ class OrbitTransitions(Transitions):
     branches: tuple[Branch, ...]
     orbit_notes: tuple[str, ...]
 
-    def __new__(cls, without_orbits: Transitions, *_: Any) -> OrbitTransitions:
+    def __new__(cls, without_orbits: Transitions, *_: Any) -> "OrbitTransitions":
         """The tuple is that of the transitions."""
         return super().__new__(cls, without_orbits)
 
@@ -154,7 +152,7 @@ class OrbitTransitions(Transitions):
             lines += [f"  {change!r}" for change in interval.changes]
         return "\n".join([*lines, *self.notes, *self.orbit_notes])
 
-    def both_sides(self, index: int, *, apart: Any = None, v: Any = None, size: int = 200) -> BothSides:
+    def both_sides(self, index: int, *, apart: Any = None, v: Any = None, size: int = 200) -> "BothSides":
         """The plane of states before and after a transition, for `si.plot`.
 
         Parameters

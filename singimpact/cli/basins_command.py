@@ -5,7 +5,7 @@ from typing import Any
 import click
 
 from singimpact.cli.model_options import model_options, take_model, wall_option
-from singimpact.cli.output import as_json_text, choice_option, columns, picture_option, save, save_once, whole_option
+from singimpact.cli.output import choice_option, columns, give, picture_option, save, save_once, whole_option
 from singimpact.inputs import refuse
 
 LAYERS = ("for-ever", "first-chatter")
@@ -66,9 +66,6 @@ def command(
     else:
         figure, summary = make()
         save(figure, output)
-    if as_json:
-        click.echo(as_json_text({"model": model.to_dict(), "output": output} | summary))
-    else:
-        rows = [[str(item["class"]), f"{item['share']:.4f}"] for item in summary["classes"]]
-        click.echo(columns(["class", "share"], rows))
-        click.echo(f"first chatter completes  {summary['first_chatter_completes']:.4f}")
+    table = columns(["class", "share"], [[str(item["class"]), f"{item['share']:.4f}"] for item in summary["classes"]])
+    text = f"{table}\nfirst chatter completes  {summary['first_chatter_completes']:.4f}"
+    give({"model": model.to_dict(), "output": output} | summary, text, as_json)

@@ -3,7 +3,7 @@
 import click
 
 from singimpact.cli.model_options import model_options, over_option, take_branches, take_model, take_orbits
-from singimpact.cli.output import as_json_text, choice_option, picture_option, save, whole_option
+from singimpact.cli.output import choice_option, give, picture_option, save, whole_option
 
 
 @click.command()
@@ -71,12 +71,8 @@ def command(
         branch for n, k in follow for branch in take_branches(take_orbits(model, (n, k), None), over, (low, high), 2000)
     ]
     save(bifurcation_sheet(diagram, branches), output)
-    if as_json:
-        rows = zip(diagram.values.tolist(), diagram.events.tolist(), strict=True)
-        click.echo(
-            as_json_text({"over": over, "cases": [{"value": value, "events": branch} for value, branch in rows]})
-        )
-    else:
-        left = int((~diagram.settled).sum())
-        open_ = f"; {left} of them without a period seen in at most {diagram.settle} impacts" if left else ""
-        click.echo(f"{output}: {points} values of {over}, {last_events} events of each{open_}")
+    rows = zip(diagram.values.tolist(), diagram.events.tolist(), strict=True)
+    left = int((~diagram.settled).sum())
+    open_ = f"; {left} of them without a period seen in at most {diagram.settle} impacts" if left else ""
+    text = f"{output}: {points} values of {over}, {last_events} events of each{open_}"
+    give({"over": over, "cases": [{"value": value, "events": branch} for value, branch in rows]}, text, as_json)

@@ -16,11 +16,10 @@ from singimpact.cli.model_options import (
     take_orbits,
 )
 from singimpact.cli.output import (
-    as_json_text,
-    blank_axes,
     choice_option,
     columns,
     csv_option,
+    give,
     picture_option,
     save,
     whole_option,
@@ -64,14 +63,11 @@ def command(
     if csv is not None:
         write_table(csv, one_table({"branch": number, **branch.table()} for number, branch in enumerate(branches, 1)))
     if output is not None:
-        from singimpact.scenes import plot
+        from singimpact.scenes import new_axes, plot
 
-        save(plot(branches, blank_axes(), height=height).figure, output)
-    click.echo(
-        as_json_text({"model": model.to_dict(), "over": over, "branches": [branch.as_dict() for branch in branches]})
-        if as_json
-        else shown(branches)
-    )
+        save(plot(branches, new_axes(7.2, 4.8), height=height).figure, output)
+    values = {"model": model.to_dict(), "over": over, "branches": [branch.as_dict() for branch in branches]}
+    give(values, shown(branches), as_json)
 
 
 def shown(branches: list[Branch]) -> str:

@@ -3,7 +3,7 @@
 import click
 
 from singimpact.cli.model_options import model_options, take_model
-from singimpact.cli.output import as_json_text, emit, lines_of, number_text, output_options, state_options, whole_option
+from singimpact.cli.output import give, lines_of, number_text, output_options, state_options, whole_option
 from singimpact.status import Status
 
 
@@ -22,9 +22,6 @@ def command(
     status = Status(int(end.status))
     enclosure = end.certified.as_dict() if end.certified else {}
     time, error = number_text(end.tau, digits), float(end.error)
-    if as_json:
-        values = {"tau": time, "error": error, "impacts": end.impacts, **enclosure, "status": status.name}
-        emit(as_json_text({"model": osc.to_dict(), **values}), output)
-    else:
-        rows = {"tau": time, "error": f"{error:.1e}", **enclosure, "impacts": end.impacts}
-        emit("\n".join(lines_of(rows, status)), output)
+    values = {"tau": time, "error": error, "impacts": end.impacts, **enclosure, "status": status.name}
+    rows = {"tau": time, "error": f"{error:.1e}", **enclosure, "impacts": end.impacts}
+    give({"model": osc.to_dict(), **values}, "\n".join(lines_of(rows, status)), as_json, output)

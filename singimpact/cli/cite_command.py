@@ -3,7 +3,7 @@
 import click
 
 from singimpact import __version__
-from singimpact.cli.output import as_json_text, emit, output_options
+from singimpact.cli.output import give, output_options
 
 PAPER = "D. R. J. Chillingworth, Dynamics of an impact oscillator near a degenerate graze"
 SOFTWARE = f"singimpact {__version__}: low-velocity impacts of an oscillator near a degenerate graze"
@@ -19,4 +19,4 @@ ENTRY = f"""@software{{singimpact,
 def command(as_json: bool, output: str | None) -> None:
     """References to cite: this version, with a BibTeX entry, and the paper."""
     data = {"software": SOFTWARE, "paper": PAPER, "bibtex": ENTRY}
-    emit(as_json_text(data) if as_json else f"{SOFTWARE}\n{PAPER}\n\n{ENTRY}", output)
+    give(data, f"{SOFTWARE}\n{PAPER}\n\n{ENTRY}", as_json, output)

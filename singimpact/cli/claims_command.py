@@ -4,7 +4,7 @@ from typing import Any
 
 import click
 
-from singimpact.cli.output import as_json_text, columns, emit, output_options
+from singimpact.cli.output import as_json_text, columns, emit, give, output_options
 
 
 @click.group()
@@ -20,12 +20,7 @@ def listed(as_json: bool, output: str | None) -> None:
 
     rows = [[entry.id, entry.section, entry.title] for entry in INDEX.values()]
     names = ("id", "section", "title")
-    emit(
-        as_json_text({"claims": [dict(zip(names, row, strict=True)) for row in rows]})
-        if as_json
-        else columns(list(names), rows),
-        output,
-    )
+    give({"claims": [dict(zip(names, row, strict=True)) for row in rows]}, columns(names, rows), as_json, output)
 
 
 @command.command()
@@ -43,9 +38,7 @@ def show(name: str, as_json: bool, output: str | None) -> None:
         "rested_on_by": [other for other, entry in index.items() if name in entry.rests_on],
         "falls_with_it": dependants(index, name),
     }
-    emit(
-        as_json_text(data) if as_json else "\n".join(f"{key:14} {_told(value)}" for key, value in data.items()), output
-    )
+    give(data, "\n".join(f"{key:14} {_told(value)}" for key, value in data.items()), as_json, output)
 
 
 def _told(value: Any) -> str:
@@ -93,11 +86,5 @@ def impact(name: str, as_json: bool, output: str | None) -> None:
     select([name])  # an unknown id is refused with the nearest known ones
     affected = dependants(INDEX, name)
     rows = [[other, INDEX[other].title] for other in affected]
-    emit(
-        as_json_text({"id": name, "falls": affected})
-        if as_json
-        else columns(["id", "statement"], rows)
-        if rows
-        else f"nothing rests on {name}",
-        output,
-    )
+    text = columns(["id", "statement"], rows) if rows else f"nothing rests on {name}"
+    give({"id": name, "falls": affected}, text, as_json, output)

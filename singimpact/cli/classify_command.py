@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeGuard
 import click
 
 from singimpact.cli.model_options import model_options, take_model, wall_option
-from singimpact.cli.output import as_json_text, columns, emit, output_options
+from singimpact.cli.output import columns, give, output_options
 from singimpact.inputs import InputError
 
 if TYPE_CHECKING:
@@ -68,12 +68,8 @@ def command(
     swans_between = interval(between) if between is not None and over in (None, "clearance") else None
     points = classify(oscillator.seen_from(wall), window_tau, window_t, swans_between)
     changes = None if over is None else _transitions(oscillator, wall, over, between, points.t, orbits)
-    emit(
-        as_json_text({"model": oscillator.to_dict(), **_as_listed(points, over, changes)})
-        if as_json
-        else _text(points, over, changes),
-        output,
-    )
+    values = {"model": oscillator.to_dict(), **_as_listed(points, over, changes)}
+    give(values, _text(points, over, changes), as_json, output)
 
 
 def _transitions(oscillator: Any, wall: str | None, over: str, between: Any, t: Any, orbits: int | None) -> Transitions:

@@ -5,7 +5,7 @@ from typing import Any
 import click
 
 from singimpact.cli.model_options import model_options, take_model, wall_option
-from singimpact.cli.output import as_json_text, csv_option, emit, output_options, whole_option
+from singimpact.cli.output import csv_option, give, output_options, whole_option
 
 
 @click.command()
@@ -36,9 +36,6 @@ def command(csv: str | None, as_json: bool, output: str | None, **options: Any) 
     rate, error = result.escape_rate()
     numbers = {name: {"mean": mean, "error": off} for name, (mean, off) in result.averages.items()}
     numbers["escape_rate"] = {"mean": rate, "error": error}
-    if as_json:
-        emit(as_json_text({"model": model.to_dict(), "until": until, "averages": numbers}), output)
-        return
     words = {
         "impacts": "impacts a unit of time",
         "v": "v of impacts",
@@ -46,4 +43,5 @@ def command(csv: str | None, as_json: bool, output: str | None, **options: Any) 
         "escape_rate": "first rests a unit of time at risk",
     }
     lines = [f"{words[name]:36}{one['mean']:.6g} +- {one['error']:.2g}" for name, one in numbers.items()]
-    emit("\n".join([repr(result), *lines]), output)
+    values = {"model": model.to_dict(), "until": until, "averages": numbers}
+    give(values, "\n".join([repr(result), *lines]), as_json, output)

@@ -9,10 +9,9 @@ import click
 from singimpact.branches.events import KINDS
 from singimpact.cli.model_options import model_options, orbit_options, take_branches, take_ends, take_model, take_orbits
 from singimpact.cli.output import (
-    as_json_text,
-    blank_axes,
     columns,
     csv_option,
+    give,
     picture_option,
     save,
     whole_option,
@@ -82,14 +81,11 @@ def command(
         tables = [{"curve": number, "kind": curve.kind, **curve.table()} for number, curve in enumerate(curves, 1)]
         write_table(csv, one_table(tables))
     if output is not None:
-        from singimpact.scenes import plot
+        from singimpact.scenes import new_axes, plot
 
-        save(plot(curves, blank_axes()).figure, output)
-    click.echo(
-        as_json_text({"model": model.to_dict(), "over": over, "curves": [curve.as_dict() for curve in curves]})
-        if as_json
-        else shown(curves)
-    )
+        save(plot(curves, new_axes(7.2, 4.8)).figure, output)
+    values = {"model": model.to_dict(), "over": over, "curves": [curve.as_dict() for curve in curves]}
+    give(values, shown(curves), as_json)
 
 
 def choose(branches: list[Branch], kinds: tuple[str, ...], index: int | None) -> list[Event]:

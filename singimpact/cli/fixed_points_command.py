@@ -2,7 +2,7 @@
 
 import click
 
-from singimpact.cli.output import as_json_text, columns, emit, output_options
+from singimpact.cli.output import columns, give, output_options
 
 
 @click.command()
@@ -15,10 +15,5 @@ def command(contact: str, restitution: str, digits: int, as_json: bool, output: 
     from singimpact.theory import fixed_points
 
     enclosures = getattr(fixed_points, contact)(restitution, digits).as_dict()
-    if as_json:
-        emit(as_json_text(enclosures), output)
-    else:
-        emit(
-            columns(["name", "value", "radius"], [[name, x["value"], x["radius"]] for name, x in enclosures.items()]),
-            output,
-        )
+    rows = [[name, x["value"], x["radius"]] for name, x in enclosures.items()]
+    give(enclosures, columns(["name", "value", "radius"], rows), as_json, output)

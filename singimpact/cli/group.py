@@ -29,6 +29,7 @@ COMMANDS = {
     "sweep": "the last state of an orbit for many values of a parameter",
     "basins": "the attractor of each state of a grid, as a picture",
     "bifurcation": "settled orbits for many values of a parameter, as a picture",
+    "regions": "what an orbit does in the end, over two numbers, as a picture",
     "ensemble": "averages of many orbits through chatter and rest",
     "branch": "follow periodic orbits through grazes, folds and doublings",
     "border": "where a released orbit returns onto gamma, and the cascade beside it",
@@ -72,7 +73,7 @@ class Commands(click.Group):
     def main(self, args: Sequence[str] | None = None, *_: Any, **__: Any) -> NoReturn:
         """Run, and exit with a code: 2 for mistakes of the caller, each printed as one line without a traceback."""
         # the default action of SIGTERM would leave temporary files; an exception lets their owners remove them
-        signal.signal(signal.SIGTERM, _ended)
+        signal.signal(signal.SIGTERM, lambda number, _frame: sys.exit(128 + number))
         sys.exit(self._code(args))
 
     def _code(self, args: Sequence[str] | None) -> int:
@@ -92,10 +93,6 @@ class Commands(click.Group):
         except OSError as error:
             click.echo(f"singimpact: the system refused: {error}", err=True)
             return 1
-
-
-def _ended(number: int, frame: Any) -> NoReturn:  # noqa: ARG001
-    sys.exit(128 + number)
 
 
 def _in_our_words(error: click.ClickException, args: Sequence[str] | None) -> str:

@@ -3,7 +3,7 @@
 import click
 
 from singimpact.cli.model_options import model_options, take_model
-from singimpact.cli.output import as_json_text, emit, lines_of, output_options, state_options, whole_option
+from singimpact.cli.output import give, lines_of, output_options, state_options, whole_option
 from singimpact.status import Status
 
 # Of the result, in JSON.
@@ -28,14 +28,13 @@ def command(
 
     result = lyapunov(osc, tau, v, impacts, transient=transient)
     status = Status(int(result.status))
-    if as_json:
-        values = result.as_dict()
-        emit(as_json_text({"model": osc.to_dict(), **{name: values[name] for name in SHOWN}}), output)
-        return
+    values = result.as_dict()
     numbers = {"exponents": result.exponents, "error": result.error, "per impact": result.per_impact}
     rows = {name: "  ".join(f"{value:.9g}" for value in values.tolist()) for name, values in numbers.items()}
     rows["impacts"] = f"{result.impacts} in a time of {result.time:.9g}, after {result.transient}"
     lines = lines_of(rows, status)
     if not result.converged:
         lines.append("not converged: the exponents of both halves differ, give more --impacts or a --transient")
-    emit("\n".join([*lines, *(["superstable"] if result.superstable else [])]), output)
+    if result.superstable:
+        lines.append("superstable")
+    give({"model": osc.to_dict(), **{name: values[name] for name in SHOWN}}, "\n".join(lines), as_json, output)

@@ -5,7 +5,7 @@ from typing import Any
 import click
 
 from singimpact.cli.model_options import model_options, take_model, wall_option
-from singimpact.cli.output import as_json_text, columns, emit, number_text, output_options, whole_option
+from singimpact.cli.output import columns, give, number_text, output_options, whole_option
 from singimpact.inputs import InputError
 from singimpact.status import Status, Wall
 
@@ -40,18 +40,21 @@ def command(
     step = oscillator.impact_map(
         [tau for tau, _ in states], [v for _, v in states], **{key: value for key, value in keywords.items() if value}
     )
-    rows = [_row(step, at, digits) for at in range(len(states))]
-    if as_json:
-        steps = _told(states, rows)
+    rows: list[list[Any]] = []
+    steps: list[dict[str, Any]] = []
+    walls = None if step.wall is None else [Wall(code).name for code in step.wall]
+    for at, (tau, v) in enumerate(states):
+        numbers = [number_text(getattr(step, name)[at], digits) for name in FIELDS[:3]]
+        status = Status(int(step.status[at]))
+        rows.append([*numbers, status])
+        steps.append({"from": {"tau": tau, "v": v}} | dict(zip(FIELDS, [*numbers, status.name], strict=True)))
         if digits is not None:
-            for at, step_ in enumerate(steps):
-                step_ |= _certified(step, at)
-        if step.wall is not None:
-            for step_, code in zip(steps, step.wall.tolist(), strict=True):
-                step_["wall"] = Wall(code).name
-        emit(as_json_text({"model": oscillator.to_dict(), "steps": steps}), output)
-    else:
-        emit(_table(states, rows, None if step.wall is None else [Wall(code).name for code in step.wall]), output)
+            impact = step.certified[at]
+            without = {"certified": None, "note": step.notes.get(at, "")}
+            steps[at] |= without if impact is None else {"certified": impact.as_dict()}
+        if walls is not None:
+            steps[at]["wall"] = walls[at]
+    give({"model": oscillator.to_dict(), "steps": steps}, _table(states, rows, walls), as_json, output)
 
 
 def _paired(taus: tuple[str, ...], vs: tuple[str, ...]) -> list[tuple[str, str]]:
@@ -61,23 +64,6 @@ def _paired(taus: tuple[str, ...], vs: tuple[str, ...]) -> list[tuple[str, str]]
             f"{len(taus)} --tau and {len(vs)} --v do not pair: give one of each, or as many, or one of one kind"
         )
     return list(zip(taus * (count // len(taus)), vs * (count // len(vs)), strict=True))
-
-
-def _row(step: Any, at: int, digits: int | None) -> list[Any]:
-    return [*(number_text(getattr(step, name)[at], digits) for name in FIELDS[:3]), Status(int(step.status[at]))]
-
-
-def _certified(step: Any, at: int) -> dict[str, Any]:
-    """Values and radii of what is proved, or null and why not."""
-    found = step.certified[at]
-    return {"certified": None, "note": step.notes.get(at, "")} if found is None else {"certified": found.as_dict()}
-
-
-def _told(states: list[tuple[str, str]], rows: list[list[Any]]) -> list[dict[str, Any]]:
-    return [
-        {"from": {"tau": tau, "v": v}} | dict(zip(FIELDS, [*row[:3], row[3].name], strict=True))
-        for (tau, v), row in zip(states, rows, strict=True)
-    ]
 
 
 def _table(states: list[tuple[str, str]], rows: list[list[Any]], walls: list[str] | None) -> str:

@@ -58,7 +58,12 @@ def take_model(options: dict[str, str | None], file: str | None = None) -> Impac
     path = path if file is None else file
     numbers = {name: value for name in LINEAR if (value := options.pop(name)) is not None}
     if path is not None:
-        return _from_file(path, numbers)
+        if numbers:
+            options_of_linear = ", ".join(f"--{name} {value}" for name, value in numbers.items())
+            raise InputError(f"--model {path} and {options_of_linear} name two models: give one of them")
+        from singimpact.impact_oscillator import read_model
+
+        return read_model(path)
     missing = [f"--{name}" for name in NEEDED if name not in numbers]
     if missing:
         raise InputError(
@@ -69,15 +74,6 @@ def take_model(options: dict[str, str | None], file: str | None = None) -> Impac
     above = numbers.pop("upper_restitution", None)
     model = linear(**numbers)
     return model if above is None else model.replace(upper_restitution=above)
-
-
-def _from_file(path: str, numbers: dict[str, str]) -> ImpactOscillator:
-    if numbers:
-        given = ", ".join(f"--{name} {value}" for name, value in numbers.items())
-        raise InputError(f"--model {path} and {given} name two models: give one of them")
-    from singimpact.impact_oscillator import read_model
-
-    return read_model(path)
 
 
 def wall_option(function: Function) -> Function:

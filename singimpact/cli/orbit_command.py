@@ -6,7 +6,7 @@ from typing import Any
 import click
 
 from singimpact.cli.model_options import model_options, take_model, wall_option
-from singimpact.cli.output import PICTURES, as_json_text, columns, emit, output_options, state_options, whole_option
+from singimpact.cli.output import PICTURES, columns, give, output_options, state_options, whole_option
 from singimpact.inputs import refuse
 from singimpact.store import written
 
@@ -38,7 +38,8 @@ def command(
     if output is not None and not as_json and Path(output).suffix.lower() in PICTURES:
         draw(orbit, output)
     else:
-        emit(as_json_text({"model": oscillator.to_dict(), **_as_listed(orbit)}) if as_json else _table(orbit), output)
+        listed = {"impacts": orbit.rows(), "phases": orbit.as_dict()["phases"]}
+        give({"model": oscillator.to_dict(), **listed}, _table(orbit, listed), as_json, output)
 
 
 def check_ending(output: str | None, as_json: bool) -> None:
@@ -63,13 +64,7 @@ def draw(thing: Any, output: str) -> None:
         figure.savefig(draft, format=Path(output).suffix[1:].lower())
 
 
-def _as_listed(orbit: Any) -> dict[str, Any]:
-    """The events of an orbit, one by one, and the phases between them."""
-    return {"impacts": orbit.rows(), "phases": orbit.as_dict()["phases"]}
-
-
-def _table(orbit: Any) -> str:
-    listed = _as_listed(orbit)
+def _table(orbit: Any, listed: dict[str, Any]) -> str:
     names = ["tau", "v", *(["wall"] if orbit.wall is not None else []), "kind"]
     impacts = [[str(at), *(str(event[name]) for name in names)] for at, event in enumerate(listed["impacts"])]
     phases = [[p["kind"], str(p["start"]), str(p["end"])] for p in listed["phases"]]

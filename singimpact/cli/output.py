@@ -85,6 +85,11 @@ def emit(text: str, output: str | None) -> None:
         write_text(output, text.rstrip("\n") + "\n")
 
 
+def give(data: Any, text: str, as_json: bool, output: str | None = None) -> None:
+    """Print data as JSON where ``--json`` asks for it and a text otherwise, or write it to the given file."""
+    emit(as_json_text(data) if as_json else text, output)
+
+
 def as_json_text(data: Any) -> str:
     """Valid JSON: nan and inf become null, and the status beside them tells them apart.
 
@@ -208,10 +213,3 @@ def save_once(request: tuple[Any, ...], output: str | Path, make: Callable[[], t
 def kept_at(asked: tuple[Any, ...], libraries: tuple[str, ...]) -> Path:
     """Where the cache keeps what was drawn: under what was asked, the package, and the libraries that draw."""
     return cache_folder() / "pictures" / f"{cache.key_of(asked, ('numpy', *libraries))}.picture"
-
-
-def blank_axes() -> Any:
-    """Axes of a figure that no window shows, of the size of a picture of branches."""
-    from matplotlib.figure import Figure
-
-    return Figure(figsize=(7.2, 4.8), dpi=150, layout="constrained").add_subplot()

@@ -1,11 +1,10 @@
 """`singimpact scene`: the picture that a scene file describes."""
 
 from pathlib import Path
-from typing import Any
 
 import click
 
-from singimpact.cli.output import as_json_text, columns, picture_option, save
+from singimpact.cli.output import columns, give, picture_option, save
 
 
 @click.command()
@@ -24,12 +23,7 @@ def command(file: str, output: str, as_json: bool) -> None:
     scene = Scene.read(file)
     save(scene.draw().figure, output, dpi=DPI)
     report = {"output": str(Path(output)), **scene.report()}
-    click.echo(as_json_text(report) if as_json else _told(report))
-
-
-def _told(report: dict[str, Any]) -> str:
-    spent, curves = report["seconds_by_layer"], report["curves"]
-    rows = [[name, str(curves[name]), f"{seconds:.3f}"] for name, seconds in spent.items()]
-    kept = ", ".join(report["from_cache"]) or "nothing"
+    rows = [[name, str(report["curves"][name]), f"{time:.3f}"] for name, time in report["seconds_by_layer"].items()]
     table = columns(["layer", "curves", "seconds"], rows) if rows else "no layers"
-    return f"{table}\n{report['flights']} flights computed; from the cache: {kept}"
+    cached = ", ".join(report["from_cache"]) or "nothing"
+    give(report, f"{table}\n{report['flights']} flights computed; from the cache: {cached}", as_json)

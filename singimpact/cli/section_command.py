@@ -6,7 +6,7 @@ import click
 
 from singimpact.cli.model_options import model_options, take_model
 from singimpact.cli.orbit_command import check_ending, draw
-from singimpact.cli.output import PICTURES, as_json_text, columns, emit, output_options, state_options, whole_option
+from singimpact.cli.output import PICTURES, columns, give, output_options, state_options, whole_option
 
 
 @click.command()
@@ -28,7 +28,6 @@ def command(
     section = osc.orbit(tau, v, impacts=impacts).section(at).after(skip)
     if output is not None and not as_json and Path(output).suffix.lower() in PICTURES:
         draw(section, output)
-    elif as_json:
-        emit(as_json_text({"model": osc.to_dict(), "at": at, **section.as_dict()}), output)
     else:
-        emit(columns(list(section.table()), [list(map(str, row.values())) for row in section.rows()]), output)
+        text = columns(list(section.table()), [list(map(str, row.values())) for row in section.rows()])
+        give({"model": osc.to_dict(), "at": at, **section.as_dict()}, text, as_json, output)

@@ -5,7 +5,7 @@ import sys
 import click
 
 from singimpact.cli.model_options import model_options, take_model
-from singimpact.cli.output import as_json_text, emit, output_options, whole_option
+from singimpact.cli.output import give, output_options, whole_option
 
 
 @click.command()
@@ -24,6 +24,6 @@ def command(file: str | None, states: int, seed: int, as_json: bool, output: str
     from singimpact.bench.selftest.run import selftest
 
     report = selftest(osc, states=states, seed=seed)
-    emit(as_json_text({"model": osc.to_dict(), **report.as_data()}) if as_json else str(report), output)
+    give({"model": osc.to_dict(), **report.as_data()}, str(report), as_json, output)
     if report.wrong:
         sys.exit(1)

@@ -6,7 +6,7 @@ from typing import Any
 import click
 
 from singimpact.cli.model_options import model_options, take_model
-from singimpact.cli.output import as_json_text, columns, emit, output_options, state_options, whole_option
+from singimpact.cli.output import columns, give, output_options, state_options, whole_option
 from singimpact.inputs import InputError
 from singimpact.status import Status
 
@@ -56,11 +56,10 @@ def command(
     with WorkerPool(workers) as pool:
         ends = np.array(sweep(ask, values, pool, keep))
     rows = [[value, *map(float, row[:2]), Status(int(row[2])).name] for value, row in zip(values, ends, strict=True)]
-    if as_json:
-        cases = [dict(zip((over, "tau", "v", "status"), row, strict=True)) for row in rows]
-        emit(as_json_text({"model": oscillator.to_dict(), "impacts": impacts, "cases": cases}), output)
-    else:
-        emit(columns([over, "tau", "v", "status"], [[str(cell) for cell in row] for row in rows]), output)
+    names = [over, "tau", "v", "status"]
+    cases = [dict(zip(names, row, strict=True)) for row in rows]
+    text = columns(names, [[str(cell) for cell in row] for row in rows])
+    give({"model": oscillator.to_dict(), "impacts": impacts, "cases": cases}, text, as_json, output)
 
 
 def last_state(fields: dict[str, Any], over: str, tau: str, v: str, impacts: int, value: float) -> Any:

@@ -3,7 +3,7 @@
 import click
 
 from singimpact.cli.model_options import model_options, take_model, wall_option
-from singimpact.cli.output import as_json_text, emit, lines_of, number_text, output_options, whole_option
+from singimpact.cli.output import give, lines_of, number_text, output_options, whole_option
 from singimpact.status import Status
 
 
@@ -34,9 +34,7 @@ def command(
     status = Status(int(limit.status))
     enclosure = limit.certified.as_dict() if limit.certified else {}
     speed, error = number_text(limit.v, digits), float(limit.error)
-    if as_json:
-        values = {"v": speed, "error": error, "status": status.name, **enclosure}
-        emit(as_json_text({"model": osc.to_dict(), **values}), output)
-    else:
-        rows = {"v": speed, "error": f"{error:.1e}", **enclosure}
-        emit("\n".join(lines_of(rows, status, (Status.complete,))), output)
+    values = {"v": speed, "error": error, "status": status.name, **enclosure}
+    rows = {"v": speed, "error": f"{error:.1e}", **enclosure}
+    text = "\n".join(lines_of(rows, status, (Status.complete,)))
+    give({"model": osc.to_dict(), **values}, text, as_json, output)

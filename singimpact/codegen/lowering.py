@@ -443,8 +443,10 @@ class _Body:
             return self._function("fabs", self._as(values[0], REAL))
         if name == "int":
             return self._whole(values[0])
-        if name == "block":
-            return self._block(*values)
+        if name == "block":  # `flights.kernels.layout.block` over an address
+            array, at, shape = values
+            length = shape.values[1] if len(shape.values) == 2 else None
+            return Array(self.builder.gep(array.address, [at]), length)
         if name in FUNCTIONS:
             return self._function(name, self._as(values[0], REAL))
         if name in self.module.functions:
@@ -473,10 +475,6 @@ class _Body:
         if value.type == WHOLE:
             return value
         return self.builder.call(self._declared("llvm.fptosi.sat.i64.f64", WHOLE, 1), [value])
-
-    def _block(self, array: Array, at: Value, shape: Fields) -> Array:
-        """`flights.kernels.layout.block` over an address."""
-        return Array(self.builder.gep(array.address, [at]), shape.values[1] if len(shape.values) == 2 else None)
 
     def _function(self, name: str, *values: Value) -> Value:
         full = f"llvm.{name}.f64" if name in INTRINSICS else name

@@ -4,8 +4,6 @@ A file is named by a digest of all its sources, of llvmlite and of the processor
 their own digest before they are mapped.
 """
 
-from __future__ import annotations
-
 import ctypes
 import os
 import re

@@ -196,7 +196,9 @@ def rational_series_source(name: str, series: RationalSeries, says: str) -> str:
     length = unit.leading if unit.divisor == 1 else "unit"
     lines += [] if unit.divisor == 1 else [f"    unit = {unit.leading} / {unit.divisor}"]
     lines += [f"    {label} = {_horner_of(poly)}" for poly, label in labels.items()]
-    lines += [f"    {jet} = {_measured(jet, unit.weights[jet], length)}" for jet in jets if unit.weights[jet]]
+    # in the unit: a jet that carries lengths to a power is divided by the unit to that power
+    for jet, power in ((jet, unit.weights[jet]) for jet in jets if unit.weights[jet]):
+        lines.append(f"    {jet} = {jet} {'*' if power > 0 else '/'} {power_text(length, abs(power))}")
     if series.argument:
         lines.append(f"    {series.variable} = {series.variable} / {power_text(length, series.argument)}")
     shown = {n: _sum(terms, series.names, labels) for n, terms in sorted(series.coefficients.items()) if terms}
@@ -211,11 +213,6 @@ def _returned(series: RationalSeries, powers: Iterable[int], length: str) -> str
         return "(" + ", ".join(f"{power_text(series.variable, n)} * c_{n}" for n in powers) + ")"
     scale = f"{power_text(length, series.value)} * " if series.value else ""
     return scale + horner(series.variable, {n: f"c_{n}" for n in powers})
-
-
-def _measured(jet: str, weight: int, unit: str) -> str:
-    """A jet in the unit: a jet that carries lengths to `weight` is divided by the unit to that power, turned round."""
-    return f"{jet} * {power_text(unit, weight)}" if weight > 0 else f"{jet} / {power_text(unit, -weight)}"
 
 
 def _horner_of(poly: Poly) -> str:

@@ -6,8 +6,6 @@ singularity: a pole, a branch point, a kink.  Nothing here raises or overflows: 
 `codegen.disc` writes the calls; the suite compares each bound with its circle.
 """
 
-from __future__ import annotations
-
 from math import cos, exp, expm1, inf, log, log1p, nan, sinh, tan
 from typing import Any
 

@@ -1,7 +1,5 @@
 """`Contact`: the jets of an oscillator at a point of the tau-axis, with the zeros of its contact order set first."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
@@ -75,7 +73,7 @@ class Contact:
     tau: Expression | None = None
 
     @classmethod
-    def generic(cls, j: int, order: int, unit: bool = False, more: tuple[str, ...] = ()) -> Contact:
+    def generic(cls, j: int, order: int, unit: bool = False, more: tuple[str, ...] = ()) -> "Contact":
         """Symbols for all jets that the sheet to total order `order` contains.
 
         Parameters
@@ -93,7 +91,7 @@ class Contact:
         return cls(j, ring, {j: ring.rational(Fraction(1)), **a} if unit else a, f)
 
     @classmethod
-    def of(cls, oscillator: Oscillator, tau: Any, j: int, order: int, ring: Any) -> Contact:
+    def of(cls, oscillator: Oscillator, tau: Any, j: int, order: int, ring: Any) -> "Contact":
         """The jets of a model at tau, evaluated in `ring`; the first j of a_c are set to zero.
 
         Parameters

@@ -62,11 +62,11 @@ class SwanPoint(Result):
 
     def tau_ball(self, bits: int = 128) -> Any:
         """A ball that contains tau_*."""
-        return evaluate_ball(self.time, bits)
+        return Balls(bits).evaluate(self.time, {})
 
     def clearance_ball(self, bits: int = 128) -> Any:
         """A ball that contains c_0."""
-        return evaluate_ball(self.place, bits)
+        return Balls(bits).evaluate(self.place, {})
 
     def certified(self, digits: int = 30) -> tuple[Certified, Certified]:
         """(tau_*, c_0), each with a certified radius and so many significant digits."""
@@ -92,11 +92,6 @@ class SwanPoint(Result):
         root(u + 0.3*u**3 - 1, 0.829051, 0.829052)
         """
         return self.model.replace(clearance=self.place, restitution=restitution)
-
-
-def evaluate_ball(tree: Expression, bits: int) -> Any:
-    """A constant as a ball."""
-    return Balls(bits).evaluate(tree, {})
 
 
 class SwanPoints(Results, tuple[SwanPoint, ...]):

@@ -11,12 +11,7 @@ from pathlib import Path
 
 from singimpact.inputs import InputError
 
-
-@dataclass(frozen=True)
-class CompileSettings:
-    """The time limit of a document."""
-
-    seconds: float = 300.0  # a section of twenty pages takes 3 s; the rest is a first run that builds fonts
+SECONDS = 300.0  # for a document: a section of twenty pages takes 3 s; the rest is a first run that builds fonts
 
 
 class CompileError(RuntimeError):
@@ -90,11 +85,11 @@ def _run(folder: str) -> None:
             errors="replace",
             stdin=subprocess.DEVNULL,
             env=environment,
-            timeout=CompileSettings().seconds,
+            timeout=SECONDS,
             check=False,
         )
     except subprocess.TimeoutExpired:
-        raise CompileError(f"latexmk did not end within {CompileSettings().seconds:.0f} s") from None
+        raise CompileError(f"latexmk did not end within {SECONDS:.0f} s") from None
     if done.returncode:
         error = re.search(r"^\S*document\.tex:\d+: .*$", done.stdout, re.MULTILINE)
         raise CompileError(error.group() if error else f"latexmk ended with exit code {done.returncode}")

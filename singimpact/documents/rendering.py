@@ -8,6 +8,7 @@ import textwrap
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import cache
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 from unicodedata import normalize
 
@@ -49,7 +50,10 @@ def lines_of(formula: str, limit: float = PAGE.line) -> list[str]:
     """
     lines: list[str] = []
     current = ""
-    for piece in _fitting(formula, limit - PAGE.indent):
+    # outside parentheses, and inside them where a piece is too wide by itself
+    whole = _pieces(formula, _OPEN + _PARENTHESES[0], _CLOSE + _PARENTHESES[1])
+    narrow = [[piece] if width(piece) <= limit - PAGE.indent else _pieces(piece, _OPEN, _CLOSE) for piece in whole]
+    for piece in chain.from_iterable(narrow):
         if current.strip() and width(current + piece) > limit - (PAGE.indent if lines else 0):
             lines.append(current.strip())
             current = ""
@@ -79,12 +83,6 @@ def _clauses(formula: str) -> list[str]:
         depth += token.startswith(_PAIRS[0]) - token.startswith(_PAIRS[1])
         clauses[-1] += token
     return [clause.strip() for clause in clauses if clause.strip()]
-
-
-def _fitting(formula: str, room: float) -> list[str]:
-    """The formula cut outside parentheses, and inside them where a piece is too wide by itself."""
-    whole = _pieces(formula, _OPEN + _PARENTHESES[0], _CLOSE + _PARENTHESES[1])
-    return [part for piece in whole for part in ([piece] if width(piece) <= room else _pieces(piece, _OPEN, _CLOSE))]
 
 
 def _pieces(formula: str, opening: tuple[str, ...], closing: tuple[str, ...]) -> list[str]:
@@ -293,11 +291,6 @@ def as_piece(section: Section, marks: Marks) -> str:
     return _filled(PIECE, section=section, marks=marks)
 
 
-def as_master(sections: Sequence[Section]) -> str:
-    """The document that takes in the files of sections."""
-    return _filled(DOCUMENT, bodies=[rf"\input{{{section.name}}}" + "\n" for section in sections])
-
-
 def as_markdown(section: Section, marks: Marks) -> str:
     """A section as Markdown with formulas between dollar signs."""
     return _filled(MARKDOWN, section=section, marks=marks)
@@ -340,7 +333,7 @@ def display(step: Step, marks: Marks) -> str:
     \\end{equation}
     """
     lines = lines_of(step.formula) if isinstance(step.equation, str) else [step.formula]
-    body = lines[0] if len(lines) == 1 else _split(lines)
+    body = lines[0] if len(lines) == 1 else "\\begin{split}\n&" + "\\\\\n&\\quad{}".join(lines) + "\n\\end{split}"
     if not step.label:
         return f"\\begin{{equation*}}\n{body}\n\\end{{equation*}}"
     badge = _stacked(marks[step.label].text) if step.label in step.claims else ""
@@ -359,11 +352,6 @@ def notes(step: Step, marks: Marks) -> list[tuple[str, str, str]]:
     own = [("", "", marks[claim].printed) for claim in step.claims if claim == step.label and marks[claim].printed]
     others = [(claim, marks[claim].text, marks[claim].printed) for claim in step.claims if claim != step.label]
     return own + sorted(others, key=lambda note: bool(note[2]))
-
-
-def _split(lines: list[str]) -> str:
-    first, *rest = lines
-    return "\\begin{split}\n&" + "\\\\\n&\\quad{}".join([first, *rest]) + "\n\\end{split}"
 
 
 def _filled(template: str, **values: Any) -> str:
@@ -434,7 +422,8 @@ def as_files(
     if form == "json":
         return {f"{section.name}.json": _json(as_data(section, marks)).encode() for section in shown}
     pieces = {f"{section.name}.tex": as_piece(section, marks).encode() for section in shown}
-    return {**pieces, f"{MASTER}.tex": as_master(shown).encode()}
+    master = _filled(DOCUMENT, bodies=[rf"\input{{{section.name}}}" + "\n" for section in shown])
+    return {**pieces, f"{MASTER}.tex": master.encode()}
 
 
 def _json(data: object) -> str:

@@ -212,7 +212,19 @@ def series_text(request: SeriesRequest, form: str) -> str:
         head = [_assigned("TAU_STAR", points), _assigned("VALID_WITHIN", valid), RATIO_SOURCE]
         return module_source(_title(request), "singimpact derive", [*head, *(_function(item) for item in answers)])
     if form == "json":
-        data = {"order": request.order, "tau_star": _points(request), "series": [_as_data(item) for item in answers]}
+        listed = [
+            {
+                "name": item.name,
+                "says": item.says,
+                "variables": list(item.variables),
+                "order": item.order,
+                "valid_within": None if item.valid == float("inf") else item.valid,
+                "sympy": str(item.expression),
+                "latex": f"{item.left} = {' '.join(_terms(item))}",
+            }
+            for item in answers
+        ]
+        data = {"order": request.order, "tau_star": _points(request), "series": listed}
         return json.dumps(data, indent=2) + "\n"
     return sympy_source(
         f"Series to order {request.order}, in sympy.",
@@ -258,19 +270,6 @@ def _rounded(radius: float | None) -> str:
     if radius is None or radius == float("inf"):
         return "None" if radius is None else 'float("inf")'
     return f"{radius * 0.995:.3g}"
-
-
-def _as_data(item: Series) -> dict[str, Any]:
-    valid = None if item.valid in (None, float("inf")) else item.valid
-    return {
-        "name": item.name,
-        "says": item.says,
-        "variables": list(item.variables),
-        "order": item.order,
-        "valid_within": valid,
-        "sympy": str(item.expression),
-        "latex": f"{item.left} = {' '.join(_terms(item))}",
-    }
 
 
 def series_section(request: SeriesRequest) -> Section:

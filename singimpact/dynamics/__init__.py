@@ -1,4 +1,4 @@
-"""Orbits of many impacts: rest, chatter, gamma and W^s, basins, bifurcation diagrams.
+"""Orbits of many impacts: rest, chatter, gamma and W^s, ensembles, basins, diagrams, regions over two numbers, fits.
 
 Not here: one flight (`flights`), periodic orbits (`branches`), power series of the chatter limit (`theory`), pictures
 (`scenes`).

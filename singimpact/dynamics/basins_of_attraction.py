@@ -1,7 +1,7 @@
 """Basins: the attractor of each state of a grid: an (n, k) orbit, a limit cycle, repeated chatter, rest, chaos."""
 
+from abc import abstractmethod
 from collections.abc import Mapping
-from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import partial
 from math import log
@@ -10,8 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from singimpact.algebra.numbers import Array, as_float
-from singimpact.case_pools import ThreadPool
-from singimpact.cases import sweep
+from singimpact.cases import in_threads
 from singimpact.dynamics.attractors import (
     CHATTER,
     CYCLE,
@@ -33,7 +32,7 @@ from singimpact.dynamics.synchrony import confirmed, responses
 from singimpact.flights.orbits import signed_iterate
 from singimpact.flights.walls import wall_codes
 from singimpact.inputs import refuse, whole
-from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.model import Oscillator, require_model
 from singimpact.oscillator.period import oscillates
 from singimpact.result import Result
 from singimpact.surface.curve import window_ends
@@ -46,7 +45,7 @@ class BasinSettings:
     # of the grid, together in a case: at most so many cases where there are so many states; fewer states leave lanes of
     # a batch idle while the last of them settle
     cases: int = 64
-    states: int = 1250
+    states: int = 2500
     same: float = 1e-3  # relative distance below which two periodic orbits are one
     impacts: int = 20_000  # at most, of an orbit that does not settle
 
@@ -54,8 +53,82 @@ class BasinSettings:
 SETTINGS = BasinSettings()
 
 
+class ClassGrid(Result):
+    """A grid of places, each of one of some classes of long-term behaviour: `attractors`, and `codes` of the places."""
+
+    attractors: tuple[LongRun, ...]
+    codes: Array
+
+    @property
+    @abstractmethod
+    def sides(self) -> tuple[tuple[str, Array], tuple[str, Array]]:
+        """Names and values of both axes; the second is the first axis of `codes`."""
+
+    @property
+    def classes(self) -> list[tuple[int, str, float]]:
+        """Code, name and share of the classes, the largest first.
+
+        Orbits of equal (n, k) are named with their v, and numbered where these are equal too.
+        """
+        counts = np.bincount(self.codes.ravel(), minlength=len(self.attractors))
+        order = np.argsort(-counts, kind="stable")
+        plain = [run.name for run in self.attractors]
+        names = [
+            f"{name}, v to {run.v.max():.4g}" if plain.count(name) > 1 and run.v.size else name
+            for name, run in zip(plain, self.attractors, strict=True)
+        ]
+        numbered = [
+            f"{name}, number {names[: i + 1].count(name)}" if names.count(name) > 1 else name
+            for i, name in enumerate(names)
+        ]
+        return [(int(i), numbered[i], float(counts[i]) / self.codes.size) for i in order]
+
+    @property
+    def boundary(self) -> Array:
+        """Places half way between neighbours of two classes, shape (m, 2)."""
+        first, second, _ = unlike_neighbours((self.sides[0][1], self.sides[1][1]), self.codes[..., None])
+        return (first + second) / 2
+
+    @property
+    def shares(self) -> str:
+        """The largest classes and their shares, in words."""
+        shares = ", ".join(f"{name} {100 * share:.3g} %" for _, name, share in self.classes[:4])
+        return f"{shares}, and {len(self.classes) - 4} more" if len(self.classes) > 4 else shares
+
+    @property
+    def named_codes(self) -> dict[str, Any]:
+        """For each place the name of its class; the shares."""
+        names = np.array([name for _, name, _ in sorted(self.classes)], dtype=object)
+        return {
+            "class": names[self.codes],
+            "classes": [{"class": name, "share": share} for _, name, share in self.classes],
+        }
+
+
+def unlike_neighbours(axes: tuple[Array, Array], table: Array) -> tuple[Array, Array, Array]:
+    """Neighbours of a grid whose rows differ: places of both, shape (m, 2), and the row of the first.
+
+    Parameters
+    ----------
+    axes : x and y. table : rows, shape (len(y), len(x), columns).
+
+    Examples
+    --------
+    >>> unlike_neighbours((np.array([0.0, 1.0]), np.zeros(1)), np.array([[[3], [4]]]))[1].tolist()
+    [[1.0, 0.0]]
+    """
+    x, y = np.meshgrid(*axes)
+    pairs = []
+    for low, high in ((np.s_[:, :-1], np.s_[:, 1:]), (np.s_[:-1], np.s_[1:])):
+        differs = (table[low] != table[high]).any(axis=-1)
+        ends = [np.stack([x[end][differs], y[end][differs]], axis=1) for end in (low, high)]
+        pairs.append((*ends, table[low][differs]))
+    first, second, rows = (np.concatenate(column) for column in zip(*pairs, strict=True))
+    return first, second, rows
+
+
 @dataclass(frozen=True)
-class Basins(Result):
+class Basins(ClassGrid):
     """The attractors of a grid of states.
 
     Attributes
@@ -81,46 +154,18 @@ class Basins(Result):
     wall: Any = None
 
     @property
-    def classes(self) -> list[tuple[int, str, float]]:
-        """Code, name and share of the classes, the largest first.
-
-        Orbits of equal (n, k) are named with their v, and numbered where these are equal too.
-        """
-        counts = np.bincount(self.codes.ravel(), minlength=len(self.attractors))
-        order = np.argsort(-counts, kind="stable")
-        plain = [run.name for run in self.attractors]
-        names = [
-            f"{name}, v to {run.v.max():.4g}" if plain.count(name) > 1 and run.v.size else name
-            for name, run in zip(plain, self.attractors, strict=True)
-        ]
-        numbered = [
-            f"{name}, number {names[: i + 1].count(name)}" if names.count(name) > 1 else name
-            for i, name in enumerate(names)
-        ]
-        return [(int(i), numbered[i], float(counts[i]) / self.codes.size) for i in order]
-
-    @property
-    def boundary(self) -> Array:
-        """Places (tau, v) half way between neighbouring states of two classes, shape (m, 2)."""
-        row, column = np.nonzero(self.codes[:, 1:] != self.codes[:, :-1])
-        beside = np.stack([(self.tau[1:] + self.tau[:-1])[column] / 2, self.v[row]], axis=1)
-        row, column = np.nonzero(self.codes[1:] != self.codes[:-1])
-        above = np.stack([self.tau[column], (self.v[1:] + self.v[:-1])[row] / 2], axis=1)
-        return np.concatenate([beside, above])
+    def sides(self) -> tuple[tuple[str, Array], tuple[str, Array]]:
+        """Names and values of both axes."""
+        return (self.coordinates[0], self.tau), (self.coordinates[1], self.v)
 
     def __repr__(self) -> str:
-        shares = ", ".join(f"{name} {100 * share:.3g} %" for _, name, share in self.classes[:4])
-        more = f", and {len(self.classes) - 4} more" if len(self.classes) > 4 else ""
-        return f"Basins({self.tau.size} x {self.v.size} states: {shares}{more})"
+        return f"Basins({self.tau.size} x {self.v.size} states: {self.shares})"
 
     def as_dict(self) -> dict[str, Any]:
         """The axes, for each state the class and whether the first chatter completes, 0 or 1; the shares."""
-        names = np.array([name for _, name, _ in sorted(self.classes)], dtype=object)
-        return dict(zip(self.coordinates, (self.tau, self.v), strict=True)) | {
-            "class": names[self.codes],
-            "first_chatter_completes": self.first_chatter_completes.astype(int),
-            "classes": [{"class": name, "share": share} for _, name, share in self.classes],
-        }
+        named = self.named_codes
+        first = {"class": named.pop("class"), "first_chatter_completes": self.first_chatter_completes.astype(int)}
+        return dict(self.sides) | first | named
 
 
 @dataclass(frozen=True, repr=False)
@@ -184,8 +229,7 @@ def basins(
     >>> found.codes.shape, found.classes[0][1]
     ((16, 16), '(inf, 1) chatter for ever')
     """
-    if not isinstance(model, Oscillator):
-        raise refuse("model", model, "an ImpactOscillator")
+    require_model("model", model)
     if model.period is None and not oscillates(model.force(), model.forcing()):
         raise refuse("model", model, "one with a period, without t, or with sums of waves in t")
     side = wall_codes(model, wall)
@@ -199,8 +243,7 @@ def basins(
     signed_iterate(model, times[:1], speeds[-1:], 1)  # compiled here once, and not by every worker of a pool
     study = Study(model, lift_offs_of_walls(model), max(-slow, fast), whole("impacts", impacts, 1, 10**7), high)
     tau, v = (coordinates.ravel() for coordinates in np.meshgrid(times, -speeds if side else speeds))
-    with ThreadPool() if executor is None else nullcontext(executor) as pool:
-        table = _classes(study, (tau, v), size, pool, output)
+    table = _classes(study, (tau, v), size, {"executor": executor, "output": output})
     table, flown, first = table[:, :3], table[:, 3], table[:, 4] > 0
     doubtful = set[tuple[float, ...]]()
     follows = futures(model, study.lift_offs, partial(_after_lift_off, study, doubtful))
@@ -214,7 +257,9 @@ def basins(
     table[late[parted(study, tau[late], v[late], flown[late])]] = SENSITIVE, 0.0, 0.0
     if not study.phases.clocked:
         cycles = np.flatnonzero(table[:, 0] >= PLACES)
-        table[cycles[_level(study, table[cycles])]] = LEVEL, 0.0, 0.0
+        several, which = np.unique(table[cycles][:, [0, 2]], axis=0, return_inverse=True)
+        level = neutral(model, several[:, 0].astype(np.int64) // PLACES, several[:, 1])[which.ravel()]
+        table[cycles[level]] = LEVEL, 0.0, 0.0
     attractors, codes = _named(study, table)
     walls = None if model.upper is None or model.autonomous else side[()]
     return (Basins if study.phases.clocked else StartBasins)(
@@ -247,7 +292,7 @@ def classified(
     return (classify if several.phases.repeats else responses)(several, tau, v)
 
 
-def _classes(study: Study, states: tuple[Array, Array], size: int, pool: Any, output: Any) -> Array:
+def _classes(study: Study, states: tuple[Array, Array], size: int, computing: dict[str, Any]) -> Array:
     """The rows of `classify` of states, some rows of the grid in a case."""
     tau, v = states
     wanted = max(SETTINGS.states, size * size / SETTINGS.cases)
@@ -256,7 +301,7 @@ def _classes(study: Study, states: tuple[Array, Array], size: int, pool: Any, ou
     long = size * min(rows, key=lambda n: abs(log(n * size / wanted)))
     cases = [(tuple(tau[i : i + long].tolist()), tuple(v[i : i + long].tolist())) for i in range(0, tau.size, long)]
     work = partial(classified, dict(study.model.to_dict()), (study.lift_offs, study.fast, study.impacts, study.start))
-    return np.concatenate([np.asarray(part) for part in sweep(work, cases, pool, output)])
+    return np.concatenate([np.asarray(block) for block in in_threads(work, cases, computing)])
 
 
 def _open_to_rounding(study: Study, table: Array, flown: Array) -> Array:
@@ -305,9 +350,3 @@ def _named(study: Study, rows: Array) -> tuple[tuple[LongRun, ...], Array]:
             same &= (rows[:, 1] == tau) & ((code == CHATTER) | (rows[:, 2] == v))
         codes[same], left = len(classes) - 1, left & ~same
     return tuple(classes), codes
-
-
-def _level(study: Study, rows: Array) -> Array:
-    """Whether rows of limit cycles are of cycles that do not attract their neighbours."""
-    several, which = np.unique(rows[:, [0, 2]], axis=0, return_inverse=True)
-    return neutral(study.model, several[:, 0].astype(np.int64) // PLACES, several[:, 1])[which.ravel()]

@@ -37,7 +37,7 @@ from singimpact.dynamics.phases import Times, phases_of
 from singimpact.dynamics.settling import Study
 from singimpact.dynamics.synchrony import meets
 from singimpact.inputs import refuse, require_memory
-from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.model import Oscillator, require_model
 from singimpact.oscillator.moving_number import with_number
 from singimpact.oscillator.period import moving_in_time, oscillates
 from singimpact.result import Result
@@ -154,8 +154,7 @@ def bifurcation(
     >>> found.events.shape, bool(abs(found.events[0, 0] - found.events[0, 3]).max() < 1e-6)
     ((2, 4, 3), True)
     """
-    if not isinstance(model, Oscillator):
-        raise refuse("model", model, "an ImpactOscillator")
+    require_model("model", model)
     model = with_number(model, over)
     if model.period is None and not oscillates(model.force(), model.forcing()):
         raise refuse("model", model, "one with a period, without t, or with sums of waves in t")

@@ -1,7 +1,5 @@
 """Chatter limits: impacts are flown until the series of the completion map gives the rest to rounding."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -104,11 +102,9 @@ class ChatterLimit(Result):
         >>> print(end.sentence.partition(":")[0])
         the impacts neither accumulate nor lift off within the number given
         """
-        if np.ndim(self.status):
-            pairs = zip(np.ravel(self.status).tolist(), np.ravel(self.cause).tolist(), strict=True)
-            texts = [(Cause(cause) if cause else Status(status)).sentence for status, cause in pairs]
-            return np.array(texts, dtype=object).reshape(np.shape(self.status))
-        return (Cause(int(self.cause)) if self.cause else Status(int(self.status))).sentence
+        pairs = zip(np.ravel(self.status).tolist(), np.ravel(self.cause).tolist(), strict=True)
+        texts = [(Cause(cause) if cause else Status(status)).sentence for status, cause in pairs]
+        return np.array(texts, dtype=object).reshape(np.shape(self.status))[()]
 
 
 def chatter_limit(
@@ -206,14 +202,12 @@ def _in_doubles(osc: Oscillator, states: States, most: int) -> ChatterLimit:
         index, one = flown.index, flown.ended()
         tau[index], error[index], impacts[index] = one.tau, one.error, one.impacts
         status[index], cause[index], above[index] = one.status, one.cause, flown.wall
-    walls = None if osc.upper is None else above
+    parts = tau, impacts.astype(np.int64), error, status_array(status), np.full(count, None), cause, above
+    shaped: list[Any] = [column.reshape(states.shape)[()] for column in parts]
     if not states.shape:
-        last = None if walls is None else walls[0]
-        return ChatterLimit(tau[0], int(impacts[0]), error[0], status[0], cause=cause[0], wall=last)
-    parts = tau, impacts.astype(np.int64), error, status_array(status), np.full(count, None), cause
-    shaped = [column.reshape(states.shape) for column in parts]
-    walls = None if walls is None else walls.reshape(states.shape)
-    return ChatterLimit(shaped[0], shaped[1], shaped[2], shaped[3], shaped[4], shaped[5], wall=walls)
+        shaped[1] = int(shaped[1])
+    wall = None if osc.upper is None else shaped[6]
+    return ChatterLimit(shaped[0], shaped[1], shaped[2], shaped[3], shaped[4], shaped[5], wall=wall)
 
 
 def _enclosed(osc: Oscillator, states: States, digits: int) -> ChatterLimit | None:
@@ -259,7 +253,7 @@ def _last(terms: list[Any]) -> Any:
     return max(abs(last), abs(before) * abs(before / first) ** (first * 0 + 1 / (len(terms) - 2)))
 
 
-def _abreast(osc: Oscillator, states: States, most: int, at: list[int]) -> Iterator[_Flown]:
+def _abreast(osc: Oscillator, states: States, most: int, at: list[int]) -> "Iterator[_Flown]":
     """The sequences of some of the states, in blocks in which a formula is evaluated for all states at once."""
     begin, many = 0, 4
     laws = [_Law(model) for model in ((osc,) if osc.upper is None else (osc, osc.mirrored))]
@@ -276,7 +270,7 @@ def _abreast(osc: Oscillator, states: States, most: int, at: list[int]) -> Itera
         many = max(1, min(4 * many, ENDING.kept * len(block) // sum(len(flown.times) for flown in block)))
 
 
-def _look_ahead(osc: Oscillator, going: list[_Flown]) -> None:
+def _look_ahead(osc: Oscillator, going: "list[_Flown]") -> None:
     """Estimate what is left of each sequence at the lower wall, which ends or is flown further."""
     if not going:
         return
@@ -290,7 +284,7 @@ def _look_ahead(osc: Oscillator, going: list[_Flown]) -> None:
         flown.go_on(*numbers)
 
 
-def _differentiate(osc: Oscillator, flown: list[_Flown]) -> None:
+def _differentiate(osc: Oscillator, flown: "list[_Flown]") -> None:
     """D G of every impact of some sequences."""
     launches = [launch for one in flown for launch in zip(one.times[:-1], one.speeds[:-1], one.walls[:-1], strict=True)]
     tau, v, walls = np.array(launches).reshape(-1, 3).T

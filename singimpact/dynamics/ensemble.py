@@ -1,29 +1,26 @@
 """`si.ensemble`: many orbits that live through chatter, rest and lift-off, and what is counted of them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
-from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import Any, ClassVar
 
 import numpy as np
 
-from singimpact.algebra.numbers import Array, as_float, constant
-from singimpact.case_pools import ThreadPool
-from singimpact.cases import sweep
+from singimpact.algebra.numbers import Array, as_float, constant, float_array
+from singimpact.cases import in_threads
 from singimpact.dynamics.families import OscillatorFamily, beside_members
 from singimpact.dynamics.lives import SETTINGS as LIFE, Lives, Stretch
+from singimpact.flights.flight_path import along
 from singimpact.flights.members import Members
 from singimpact.inputs import checked_keywords, refuse, require_memory, takes_two_walls, whole
 from singimpact.oscillator.model import Oscillator
-from singimpact.result import Result
-from singimpact.status import status_array
+from singimpact.result import Result, default_axes
+from singimpact.status import Status, status_array
 
 # Orbits that are flown together; their random numbers are those of the block, wherever it is computed
 BLOCK = 2048
-# What is kept of each orbit
+# What is kept of each orbit, before its samples
 COLUMNS = ("tau", "v", "wall", "status", "impacts", "rests", "first_rest", "resting", "speed")
 # The part of the time on which a_c changes below which chatter is over where its restitution is random
 SHORT = 1e-9
@@ -41,6 +38,16 @@ class Survival(Result):
     error: Array
 
 
+@dataclass(frozen=True)
+class Spectrum(Result):
+    """The mean power spectrum of x of many orbits, one-sided, per unit of angular frequency, and its standard error."""
+
+    array_axes: ClassVar[Mapping[str, tuple[str, ...]]] = dict.fromkeys(("frequency", "power", "error"), ("frequency",))
+    frequency: Array
+    power: Array
+    error: Array
+
+
 @dataclass(frozen=True, eq=False)
 class Ensemble(Result):
     """Orbits of many states.
@@ -51,6 +58,8 @@ class Ensemble(Result):
         two walls, else None. impacts : flown. rests : chatters that were over. first_rest : the time at which the
         first one was, inf if none was. resting : time at rest on the wall.
     start, duration : the first times of the orbits, and how long each lasts. mean_v : of the impacts.
+    model : of a family that of its first member.
+    t, x, xdot : times of samples, and the motion there, shape (times, *states); None without `sample`.
     """
 
     tau: Array
@@ -64,6 +73,17 @@ class Ensemble(Result):
     start: Array
     duration: Array
     wall: Array | None = None
+    t: Array | None = None
+    x: Array | None = None
+    xdot: Array | None = None
+    model: Oscillator | None = None
+    heads_csv = True
+
+    def arrays(self) -> dict[str, tuple[tuple[str, ...], Any]]:
+        """Names of axes and values."""
+        states = default_axes(self.tau.ndim)
+        axes = {"t": ("t",), "x": ("t", *states), "xdot": ("t", *states)}
+        return {name: (axes.get(name, states), value) for name, value in self.as_dict().items()}
 
     def __repr__(self) -> str:
         ended = np.count_nonzero(self.status)
@@ -111,6 +131,40 @@ class Ensemble(Result):
         }
         return {name: _mean(values[np.isfinite(values)]) for name, values in columns.items()}
 
+    def density(self, bins: Any = 50) -> tuple[Array, Array, Array]:
+        """The density of the samples over x and x', and the edges of its cells, as `numpy.histogram2d` gives them.
+
+        Examples
+        --------
+        >>> ball = Oscillator("1", "1.9*sin(t)", 0, "1/2")
+        >>> found = ensemble(ball, 0, np.linspace(0.1, 3, 50), until=50, sample=0)
+        >>> found.density(8)[0].shape
+        (8, 8)
+        """
+        _, x, xdot = self._samples()
+        seen = np.isfinite(x)
+        return np.histogram2d(x[seen], xdot[seen], bins=bins, density=True)
+
+    @cached_property
+    def spectrum(self) -> Spectrum:
+        """The power spectrum of x, from the samples under Hann's window; orbits that ended early are left out."""
+        times, x, _ = self._samples()
+        steps = np.diff(times)
+        if steps.size < 7 or np.ptp(steps) > 1e-9 * np.abs(times).max():
+            raise refuse("sample", f"{times.size} times", "8 or more evenly spaced times for a spectrum")
+        rows = x.reshape(times.size, -1)
+        rows = rows[:, np.isfinite(rows).all(axis=0)]
+        window = np.hanning(times.size + 1)[:-1, None]
+        moved = np.fft.rfft((rows - rows.mean(axis=0)) * window, axis=0)
+        power = np.abs(moved) ** 2 * steps[0] / (np.pi * np.sum(window**2))
+        mean, error = np.transpose([_mean(values) for values in power])
+        return Spectrum(2 * np.pi * np.fft.rfftfreq(times.size, steps[0]), mean, error)
+
+    def _samples(self) -> tuple[Array, Array, Array]:
+        if self.t is None or self.x is None or self.xdot is None:
+            raise refuse("sample", None, "times of samples: give sample= to ensemble()")
+        return self.t, self.x, self.xdot
+
 
 def _mean(values: Array) -> tuple[float, float]:
     mean = float(values.mean()) if values.size else np.nan
@@ -126,6 +180,7 @@ def ensemble(
     *,
     until: object = None,
     impacts: int | None = None,
+    sample: object = None,
     wall: object = None,
     random: Mapping[str, Any] | None = None,
     **computing: Any,
@@ -137,17 +192,19 @@ def ensemble(
     osc : a model, or a family (`osc.over`), of which each member has its own states. tau, v : states, which broadcast.
     until : the time up to which orbits are flown; each ends with its first impact after it. impacts : instead, how many
         are flown of each; a chatter that completes counts as one, some more may be flown.
-    wall : of the states, of a model with two walls.
+    sample : times at which x and x' are kept, or a phase, at which they are once a period. wall : of the states.
     random : "restitution" and "kick", each a function of a numpy Generator and a size: the restitution of each impact,
         and a velocity added after it (a result < 0 is turned back); "generator" or a seed for them.
     computing : `executor`, `output`, as for `sweep`; without an executor here, by compiled loops on two threads.
 
     Returns
     -------
-    Ensemble : the last states, `.first_rest`, `.survival`, `.escape_rate()`, `.averages`.
+    Ensemble : the last states, `.first_rest`, `.survival`, `.escape_rate()`, `.averages`; of samples `.x`, `.xdot`,
+        `.density()`, `.spectrum`.
 
     Notes
     -----
+    In the last thousandth of a chatter the samples have x at the wall.
     White noise between impacts is no ensemble of this kind: after a launch from the wall it has no first impact.
 
     Examples
@@ -163,22 +220,18 @@ def ensemble(
         raise refuse("until", until, "a time, or impacts= in its place")
     end = as_float(constant("until", until)) if until is not None else np.inf
     most = whole("impacts", impacts, 0, 10**9) if impacts is not None else 10**9
-    unknown = sorted(set(computing) - {"executor", "output"})
-    if unknown:
-        raise refuse("option", unknown[0], "executor or output")
     noise, generator = _noise_of({} if random is None else random)
     model, flat, which, columns, shape = beside_members(osc, (tau, v, wall))
     start = columns[0]
     if np.isfinite(end) and start.size and not end > start.max():
         raise refuse("until", until, f"a time after all starts, the last of which is {start.max():.6g}")
-    require_memory("orbits", (len(COLUMNS), start.size), 8)
+    times = _times(model, sample, start, end)
+    require_memory("orbits and their samples", (len(COLUMNS) + 2 * times.size, start.size), 8)
     cases = _cases(flat, which, columns, generator if noise else None)
-    work = partial(_flown, model, (end, most), noise)
-    executor = computing.get("executor")
-    with ThreadPool(1) if executor is None else nullcontext(executor) as pool:
-        rows = sweep(work, cases, pool, computing.get("output"))
-    table = np.concatenate([np.asarray(piece) for piece in rows])[: start.size] if cases else np.zeros((0, 9))
-    return _result(model, table, start, shape)
+    work = partial(_flown, model, (end, most), times, noise)
+    blocks = in_threads(work, cases, computing, 1)
+    table = np.asarray(blocks).reshape(-1, len(COLUMNS) + 2 * times.size)[: start.size]
+    return _result(model, table, times, start, shape)
 
 
 def _noise_of(random: Any) -> tuple[dict[str, Callable[..., Any]], np.random.Generator]:
@@ -207,11 +260,26 @@ def _cases(
     return cases
 
 
-def _result(model: Oscillator, table: Array, start: Array, shape: tuple[int, ...]) -> Ensemble:
+def _times(model: Oscillator, sample: Any, start: Array, end: float) -> Array:
+    """The times of samples."""
+    if sample is None:
+        return np.zeros(0)
+    if np.ndim(sample):
+        return np.sort(float_array("sample", sample).ravel())
+    if model.period is None or not np.isfinite(end):
+        raise refuse("sample", sample, "an array of times: a phase needs a model with a period, and until=")
+    period, phase = as_float(model.period), as_float(constant("sample", sample))
+    latest = start.max() if start.size else 0.0
+    return phase + period * np.arange(np.ceil((latest - phase) / period), np.floor((end - phase) / period) + 1)
+
+
+def _result(model: Oscillator, table: Array, times: Array, start: Array, shape: tuple[int, ...]) -> Ensemble:
     columns = dict(zip(COLUMNS, table.T[: len(COLUMNS)].reshape(len(COLUMNS), *shape), strict=True))
+    motion = table[:, len(COLUMNS) :].T.reshape(2, times.size, *shape)
     impacts, begun = columns["impacts"].astype(np.int64), start.reshape(shape)
     with np.errstate(invalid="ignore"):
         speed = columns["speed"] / np.where(impacts > 0, impacts, np.nan)
+    t, x, xdot = (times, motion[0], motion[1]) if times.size else (None, None, None)
     return Ensemble(
         columns["tau"],
         columns["v"],
@@ -224,17 +292,108 @@ def _result(model: Oscillator, table: Array, start: Array, shape: tuple[int, ...
         begun,
         columns["tau"] - begun,
         columns["wall"].astype(np.int8) if model.upper is not None else None,
+        t,
+        x,
+        xdot,
+        model,
     )
 
 
-def _flown(model: Oscillator, ends: tuple[float, int], noise: Mapping[str, Callable[..., Any]], case: Any) -> Array:
-    """Rows of `COLUMNS` of one block of orbits, filled up to `BLOCK`."""
+def _flown(
+    model: Oscillator, ends: tuple[float, int], times: Array, noise: Mapping[str, Callable[..., Any]], case: Any
+) -> Array:
+    """Rows of `COLUMNS` and samples of one block of orbits, filled up to `BLOCK`."""
     numbers, which, tau, v, walls, seed = case
     run = _Run(Lives(Members(model, numbers), which, tau, v, walls), ends, noise, seed)
+    run.samples = Samples(run.lives, tau, times) if times.size else None
     run.fly()
-    table = np.full((BLOCK, len(COLUMNS)), np.nan)
-    table[: which.size] = run.table()
+    table = np.full((BLOCK, len(COLUMNS) + 2 * times.size), np.nan)
+    table[: which.size, : len(COLUMNS)] = run.table()
+    if run.samples is not None:
+        run.samples.end()
+        table[: which.size, len(COLUMNS) :] = np.concatenate(list(run.samples.motion), axis=1)
     return table
+
+
+# ---- the motion at given times
+
+
+class Samples:
+    """x and x' of orbits at times.
+
+    Parameters
+    ----------
+    lives : the orbits, before they are flown. start : their first times. times : of the samples, in order.
+
+    Attributes
+    ----------
+    motion : x and x', shape (2, orbits, times); nan before the start, and after an orbit has ended unresolved.
+    """
+
+    def __init__(self, lives: Lives, start: Array, times: Array) -> None:
+        self.lives, self.times = lives, times
+        self.motion = np.full((2, lives.which.size, times.size), np.nan)
+        self._alone()  # orbits that begin at rest have rested, and have flown to their first impact
+        rested = np.flatnonzero(np.isfinite(lives.lifted[:, 0]) | (lives.status == Status.sticks))
+        self._rest(rested, start[rested])
+
+    def add(self, stretch: Stretch) -> None:
+        """Take in the flights of a stretch, and the rests and the lift-offs after it."""
+        phase, turns, v, walls = stretch.begun
+        begun = self.lives.time_of(phase, turns, stretch.chosen)
+        starts, speeds = np.column_stack([begun, self.lives.times(stretch)]), np.column_stack([v, stretch.rows[..., 1]])
+        sides = np.column_stack([walls, walls[:, None] ^ (stretch.real & (stretch.rows[..., 11] == 1))])
+        orbit, flight = np.nonzero(stretch.real)
+        at = orbit, flight
+        self._fly(stretch.chosen[orbit], (starts[at], speeds[at], sides[at]), starts[orbit, flight + 1])
+        self._alone()
+        rested = np.flatnonzero(stretch.rested)
+        self._rest(stretch.chosen[rested], starts[rested, stretch.flown[rested]])
+
+    def end(self) -> None:
+        """Fill in the motion after the last events of orbits that do not return."""
+        lives = self.lives
+        away = np.flatnonzero(np.isin(lives.status, (Status.no_return, Status.escaped)))
+        self._fly(away, (lives.time(away), lives.v[away], lives.wall[away]), np.full(away.size, np.inf))
+
+    def _alone(self) -> None:
+        """Flights that the impact map has decided."""
+        flown = [single for single in self.lives.singles if single.step.status in (Status.hit, Status.graze)]
+        columns = [(one.orbit, one.time, one.v, one.wall, float(one.step.flight_time)) for one in flown]
+        orbits, times, v, walls, lasted = np.array(columns).reshape(-1, 5).T
+        self._fly(orbits.astype(int), (times, v, walls.astype(np.int8)), times + lasted)
+
+    def _rest(self, orbits: Array, since: Array) -> None:
+        """Masses at rest since some times up to their lift-off, if one follows, and the flight after it."""
+        lives, (phase, turns, wall) = self.lives, self.lives.lifted[orbits].T
+        forever = lives.status[orbits] == Status.sticks
+        lifted = np.where(forever, np.inf, lives.time_of(phase, turns, orbits))
+        above = np.where(forever, lives.wall[orbits], wall) == 1
+        places, ends = lives.places(lives.which[orbits], above), np.searchsorted(self.times, np.stack([since, lifted]))
+        for orbit, height, begin, end in zip(orbits.tolist(), places.tolist(), *ends.tolist(), strict=True):
+            self.motion[0, orbit, begin:end], self.motion[1, orbit, begin:end] = height, 0.0
+        flies = lives.status[orbits] == 0
+        launches = lifted[flies], np.zeros(np.count_nonzero(flies)), above[flies].astype(np.int8)
+        self._fly(orbits[flies], launches, lives.time(orbits[flies]))
+
+    def _fly(self, orbits: Array, launches: tuple[Array, Array, Array], ends: Array) -> None:
+        """Flights of orbits from launches (time, v, wall) up to some times."""
+        begun, v, walls = launches
+        first = np.searchsorted(self.times, begun)
+        counts = np.maximum(np.searchsorted(self.times, ends) - first, 0)
+        flight = np.repeat(np.arange(orbits.size), counts)
+        slot = first[flight] + np.arange(flight.size) - np.repeat(np.cumsum(counts) - counts, counts)
+        lives, since = self.lives, self.times[slot] - begun[flight]
+        phase, _ = lives.split(begun, np.zeros(orbits.size), orbits)
+        heights, sides = np.empty((since.size, 2)), 2 * lives.which[orbits] + walls
+        for side in np.unique(sides[flight]).tolist():
+            chosen = sides[flight] == side
+            model = lives.members.side(*divmod(side, 2))
+            heights[chosen] = along(model, phase, v, flight[chosen], since[chosen])
+        above = walls[flight] == 1
+        heights *= np.where(above, -1.0, 1.0)[:, None]
+        heights[:, 0] += lives.places(lives.which[orbits[flight]], above)
+        self.motion[:, orbits[flight], slot] = heights.T
 
 
 class _Run:
@@ -247,6 +406,7 @@ class _Run:
         self.noise, self.generator = noise, np.random.default_rng(seed)
         size = lives.which.size
         self.speed = np.zeros(size)
+        self.samples: Samples | None = None
         if noise:
             lives.near = SHORT
 
@@ -261,6 +421,8 @@ class _Run:
             before = {name: getattr(lives, name)[going].copy() for name in ("flown", "rests", "first_rest", "resting")}
             stretch = lives.advance(count, going)
             self.speed[going] += np.where(stretch.real, stretch.rows[..., 1], 0.0).sum(axis=1)
+            if self.samples is not None:
+                self.samples.add(stretch)
             if np.isfinite(self.end):
                 self._cut(stretch, before)
             if self.noise:
@@ -283,16 +445,9 @@ class _Run:
             raise refuse(name, values.ravel()[:4].tolist(), wanted)
         return values
 
-    def _times(self, stretch: Stretch) -> Array:
-        """Times of the impacts of a stretch."""
-        phase, turns, _, _ = stretch.begun
-        with np.errstate(invalid="ignore"):
-            begun = phase + np.where(turns == 0, 0.0, turns * self.lives.unit[stretch.chosen])
-        return np.asarray(begun[:, None] + np.where(stretch.real, stretch.rows[..., 0], 0.0))
-
     def _cut(self, stretch: Stretch, before: dict[str, Array]) -> None:
         """Orbits whose time has passed the end go back to their first impact after it."""
-        lives, times = self.lives, self._times(stretch)
+        lives, times = self.lives, self.lives.times(stretch)
         passed = (times >= self.end) & stretch.real
         late = np.flatnonzero(passed.any(axis=1))
         if not late.size:

@@ -1,7 +1,5 @@
 """`osc.over(...)`: models that differ in numbers, as one thing that is flown in compiled loops."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from typing import Any

@@ -8,13 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from singimpact.algebra.expressions import evaluate
-from singimpact.algebra.numbers import Array, as_float
-from singimpact.algebra.rings import DOUBLES
+from singimpact.algebra.numbers import Array
 from singimpact.dynamics.attractors import AWAY, CYCLE, LEVEL, STILL, STUCK
 from singimpact.dynamics.phases import phases_of
-from singimpact.flights.compiled_model import compiled_model
 from singimpact.flights.flat_numbers import gap_of
+from singimpact.flights.flight_path import acceleration_off_wall, followed
 from singimpact.flights.horizons import horizon_of
 from singimpact.oscillator.model import Oscillator
 
@@ -88,14 +86,10 @@ def _fates(model: Oscillator, height: Array, xdot: Array) -> Array:
 def _moved(model: Oscillator, state: Array, times: Array) -> Array:
     """x - c and x', shape (n, m, 2), at times (n, m) after states (n, 2); the wall is not felt."""
     n, m = times.shape
-    compiled = compiled_model(model)
     z, u = state.T
     with np.errstate(all="ignore"):
-        if compiled.linear:
-            flat = compiled.places(np.zeros(n * m), np.repeat(u, m), times.ravel(), np.repeat(z, m))
-        else:
-            flat = compiled.follow_all(np.zeros(n), u.copy(), np.full(n, m), np.ascontiguousarray(times.ravel()), z)
-    return np.asarray(flat).reshape(n, m, 2)
+        flat = followed(model, np.zeros(n), u.copy(), np.full(n, m), np.ascontiguousarray(times.ravel()), z)
+    return flat.reshape(n, m, 2)
 
 
 def _followed(model: Oscillator, state: Array, span: float) -> tuple[Array, Array]:
@@ -111,14 +105,6 @@ def _followed(model: Oscillator, state: Array, span: float) -> tuple[Array, Arra
         if not coarse or count * phases_of(model).unit > SETTINGS.densest * span:
             return times, way
         count *= 2
-
-
-def _acceleration(model: Oscillator, z: Array, u: Array) -> Array:
-    """x'' off the wall."""
-    state = {"x": as_float(model.clearance) + z, "xdot": u}
-    with np.errstate(all="ignore"):
-        forcing, force = (evaluate(tree, state, DOUBLES) for tree in (model.forcing(), model.force()))
-        return np.asarray(forcing - force + 0 * z)
 
 
 def _decided(model: Oscillator, times: Array, way: Array) -> Array:
@@ -180,7 +166,7 @@ def _minima(model: Oscillator, times: Array, way: Array) -> Array:
         falls = low[:, 1] < 0
         ends = [np.where(falls, later, ends[0]), np.where(falls, ends[1], later)]
         with np.errstate(all="ignore"):
-            aim = later - low[:, 1] / _acceleration(model, *low.T)
+            aim = later - low[:, 1] / acceleration_off_wall(model, *low.T)
         inside = (aim >= ends[0]) & (aim <= ends[1])
         later, before = np.where(inside, aim, (ends[0] + ends[1]) / 2), later
         if (np.abs(later - before) <= SETTINGS.root * width).all():
@@ -196,14 +182,18 @@ def _rests(model: Oscillator, way: Array) -> tuple[Array, Array]:
     with np.errstate(all="ignore"):
         for _ in range(SETTINGS.newton):
             size = step * np.maximum(np.abs(z), 1e-3)
-            ahead, behind = (_acceleration(model, z + side * size, 0 * z) for side in (1, -1))
-            z = z - _acceleration(model, z, 0 * z) * 2 * size / (ahead - behind)
+            ahead, behind = (acceleration_off_wall(model, z + side * size, 0 * z) for side in (1, -1))
+            z = z - acceleration_off_wall(model, z, 0 * z) * 2 * size / (ahead - behind)
         size = step * np.maximum(np.abs(z), 1e-3)
-        stiff = (_acceleration(model, z - size, 0 * z) - _acceleration(model, z + size, 0 * z)) / (2 * size)
+        stiff = (acceleration_off_wall(model, z - size, 0 * z) - acceleration_off_wall(model, z + size, 0 * z)) / (
+            2 * size
+        )
         rate = np.sqrt(stiff)
-        loss = (_acceleration(model, z, -size * rate) - _acceleration(model, z, size * rate)) / (2 * size * rate)
+        loss = (acceleration_off_wall(model, z, -size * rate) - acceleration_off_wall(model, z, size * rate)) / (
+            2 * size * rate
+        )
         away = np.maximum(np.abs(way[..., 0] - z[:, None]), np.abs(way[..., 1]) / rate[:, None])
         now, before = away[:, -half // 2 :].max(axis=1), away[:, half : -half // 2].max(axis=1)
-        balanced = np.abs(_acceleration(model, z, 0 * z)) < 1e-9 * stiff * np.maximum(np.abs(z), 1e-3)
+        balanced = np.abs(acceleration_off_wall(model, z, 0 * z)) < 1e-9 * stiff * np.maximum(np.abs(z), 1e-3)
         comes = (z > 0) & (stiff > 0) & (loss > 1e-6 * rate) & balanced & (now < before) & (now < SETTINGS.near * z)
     return z, comes

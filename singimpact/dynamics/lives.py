@@ -4,8 +4,6 @@ Impacts are flown by compiled loops until the chatter left is short; then its re
 the next rise of a_c through 0. What follows a lift-off is fixed by its phase: the first impact after it is flown once.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -206,7 +204,7 @@ class Lives:
     phase, turns : the time of each orbit, phase + turns period; without a period the time, and 0. v, wall : its state.
     status : 0, or why it goes on no more. flown : impacts. rests : chatters that were over. first_rest : the time of
     the first of them, inf before it. lifted : phase and turns of the last lift-off, nan before one. cycle : periods
-    between two lift-offs at one phase, 0 before that. singles :
+    between two lift-offs at one phase, 0 before that. between : impacts between the last two lift-offs. singles :
     flights that the impact map has decided since the last `advance` began.
     """
 
@@ -221,7 +219,7 @@ class Lives:
         self.status, self.flown, self.rests = np.zeros(size, np.int8), np.zeros(size, int), np.zeros(size, int)
         self.first_rest, self.resting = np.full(size, np.inf), np.zeros(size)
         self.lifted = np.full((size, 3), np.nan)
-        self.cycle = np.zeros(size)
+        self.cycle, self.between, self._lifted_at = np.zeros(size), np.zeros(size, int), np.zeros(size, int)
         self.near = SETTINGS.near
         self.singles: list[Single] = []
         self._landings: dict[tuple[int, int, float], tuple[float, float, int, int]] = {}
@@ -232,9 +230,17 @@ class Lives:
 
     def time(self, chosen: Any = slice(None)) -> Array:
         """The times of the present states."""
+        return self.time_of(self.phase[chosen], self.turns[chosen], chosen)
+
+    def time_of(self, phase: Array, turns: Array, chosen: Any) -> Array:
+        """The times of states of chosen orbits."""
         with np.errstate(invalid="ignore"):
-            later = np.where(self.turns == 0, 0.0, self.turns * self.unit)
-        return np.asarray((self.phase + later)[chosen])
+            return np.asarray(phase + np.where(turns == 0, 0.0, turns * self.unit[chosen]))
+
+    def times(self, stretch: Stretch) -> Array:
+        """The times of the impacts of a stretch, shape (orbits, impacts)."""
+        begun = self.time_of(*stretch.begun[:2], stretch.chosen)
+        return begun[:, None] + np.where(stretch.real, stretch.rows[..., 0], 0.0)
 
     def places(self, which: Any, above: Any) -> Array:
         """x of the walls of members."""
@@ -316,6 +322,7 @@ class Lives:
         beside = np.where(np.isfinite(self.unit[at]), SETTINGS.same * self.unit[at], -1.0)
         again = (np.abs(phases - self.lifted[at, 0]) <= beside) & (self.lifted[at, 2] == wall)
         self.cycle[at] = np.where(again, turns - self.lifted[at, 1], self.cycle[at])
+        self.between[at], self._lifted_at[at] = self.flown[at] - self._lifted_at[at], self.flown[at]
         self.lifted[at] = np.stack([phases, turns, np.full(at.size, wall)], axis=1)
         self.phase[at], self.turns[at] = phases, turns
         self.resting[at] += self.time(at) - before
@@ -357,13 +364,15 @@ class Lives:
 
     def _decide(self, index: int, code: int) -> None:
         """One flight by the impact map, which says what became of it."""
-        self._decided[index] = self._decided.get(index, 0) + 1
-        if self._decided[index] > SETTINGS.decided and not self.members.osc.plastic:
+        if self._decided.get(index, 0) >= SETTINGS.decided or not np.isfinite(self.v[index]):
             self.status[index] = Status.unresolved
             return
         here = self.members.side(int(self.which[index]), int(self.wall[index]))
         launched = float(self.phase[index]), float(self.v[index]), int(self.wall[index])
         step = impact_map(here, *launched[:2])
+        # without rebound each flight is one from rest
+        if step.status == Status.graze or not self.members.osc.plastic:
+            self._decided[index] = self._decided.get(index, 0) + 1
         self.singles.append(Single(index, float(self.time(index)), *launched, step))
         if step.status not in (Status.hit, Status.graze):
             self.status[index] = int(step.status) or int(decoded(np.array([code]))[0][0])

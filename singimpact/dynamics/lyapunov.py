@@ -7,8 +7,6 @@ the entries of D G keep too few digits of a strong contraction. D G comes with t
 variational equation of others.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any

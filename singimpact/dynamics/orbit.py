@@ -1,7 +1,5 @@
 """Orbits: impact after impact, rest on the obstacle and complete chatter in between."""
 
-from __future__ import annotations
-
 import warnings
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -167,11 +165,6 @@ class Orbit(Result):
         walls = {} if self.wall is None else {"wall": plain(self.wall, "wall")}
         return {"tau": self.tau, "v": self.v, **walls, "kind": self.kind.astype(object), "phases": phases}
 
-    def _later(self, time: float) -> Orbit:
-        """The orbit with all times moved on by whole periods."""
-        phases = [(kind, begin + time, end + time) for kind, begin, end in self.phases]
-        return replace(self, tau=self.tau + time, phases=phases, end=self.end + time)
-
     @property
     def _last_kind(self) -> str:
         """The kind of the phase after the last event; empty where there is none."""
@@ -232,7 +225,9 @@ def orbit(osc: Oscillator, tau: Any, v: Any, impacts: int = 200, *, horizon: Any
     if isinstance(states.turns, float):
         run.given = states.given(0)
         return run.orbit()
-    return run.orbit()._later(float(states.turns[0]))
+    orbit, time = run.orbit(), float(states.turns[0])
+    phases = [(kind, begin + time, end + time) for kind, begin, end in orbit.phases]
+    return replace(orbit, tau=orbit.tau + time, phases=phases, end=orbit.end + time)
 
 
 def dropped_orbit(osc: Oscillator, start: tuple[Any, Any, Any], impacts: int = 200, *, horizon: Any = None) -> Orbit:

@@ -15,7 +15,7 @@ from singimpact.flights.impact_map import impact_map
 from singimpact.flights.response import response
 from singimpact.flights.states import States
 from singimpact.inputs import checked_keywords, refuse
-from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.model import Oscillator, require_model
 from singimpact.result import Result, value_in_words
 from singimpact.status import Status, status_array
 
@@ -89,8 +89,7 @@ def release_map(osc: Oscillator, tau: Any = None) -> ReleaseMap:
     >>> round(float(after.tau - fixed), 12), round(float(after.slope), 12)
     (6.28318530718, -0.54285307107)
     """
-    if not isinstance(osc, Oscillator):
-        raise refuse("osc", osc, "an ImpactOscillator")
+    require_model("osc", osc)
     if not osc.plastic:
         raise refuse("restitution", osc.restitution, "0: the motion after an impact depends on its velocity otherwise")
     if osc.period is None:

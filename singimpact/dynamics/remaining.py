@@ -46,7 +46,8 @@ def remaining(osc: Oscillator, tau: Array, v: Array, a: Array | None = None) -> 
     """
     forces, rebounds, slopes = _jets(osc)
     if osc.parametric:
-        forces = _forces_at(osc, tau)
+        trees = force_trees(osc.force(), osc.clearance)
+        forces = {name: evaluate(tree, {"t": tau}, DOUBLES) + 0.0 * tau for name, tree in trees.items()}
     push = acceleration(osc, tau) if a is None else a
     with np.errstate(all="ignore"):
         jets = {f"a_d{n}": evaluate(tree, {"t": tau}, DOUBLES) + 0.0 * tau for n, tree in enumerate(slopes, 1)}
@@ -76,13 +77,6 @@ def force_trees(force: Expression, clearance: Expression) -> dict[str, Expressio
             tree = derivative(tree, letter)
         trees[name] = substitute(tree, at_rest)
     return trees | {"f_011": derivative(trees["f_01"], "t")}
-
-
-def _forces_at(osc: Oscillator, tau: Array) -> dict[str, Any]:
-    return {
-        name: evaluate(tree, {"t": tau}, DOUBLES) + 0.0 * tau
-        for name, tree in force_trees(osc.force(), osc.clearance).items()
-    }
 
 
 @lru_cache(maxsize=256)

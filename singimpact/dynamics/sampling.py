@@ -1,7 +1,5 @@
 """x and x' of an orbit at given times: within flights, in chatter that was summed up, at rest; its sections."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from math import ceil, log
 
@@ -13,18 +11,11 @@ from singimpact.flights.orbits import orbit_segment
 from singimpact.oscillator.model import Oscillator
 from singimpact.result import Result
 
-
-@dataclass(frozen=True)
-class SamplingSettings:
-    """Settings of the flights through a chatter that was summed up."""
-
-    # velocities below this part of the largest of the orbit are 0: heights are then below its square
-    slow: float = 2.0**-52
-    # impacts of one call into compiled code
-    block: int = 4096
-
-
-SETTINGS = SamplingSettings()
+# Through a chatter that was summed up velocities below this part of the largest one are 0: heights are then below its
+# square
+SLOW = 2.0**-52
+# Impacts of one call into compiled code
+BLOCK = 4096
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +34,7 @@ class Section(Result):
     def __repr__(self) -> str:
         return f"Section({self.t.size} states, one a period)"
 
-    def after(self, states: int) -> Section:
+    def after(self, states: int) -> "Section":
         """The section without its first states, such as those of a transient."""
         return Section(self.t[states:], self.x[states:], self.xdot[states:])
 
@@ -75,7 +66,7 @@ def sampled(
     out[within] = 0.0
     for at in np.unique(which[within & sums[which]]).tolist():
         inside = np.flatnonzero(within & (which == at))
-        out[inside] = _in_chatter(osc, float(tau[at]), float(v[at]), times[inside], SETTINGS.slow * float(v.max()))
+        out[inside] = _in_chatter(osc, float(tau[at]), float(v[at]), times[inside], SLOW * float(v.max()))
     flying = np.flatnonzero(within & flights[which])
     if height > 0:
         first = flying[which[flying] == 0]
@@ -94,7 +85,7 @@ def _in_chatter(osc: Oscillator, tau: float, v: float, times: Array, slow: float
     rate = -log(as_float(osc.slope_at_rest()))
     while done < times.size and v > slow:
         # where r = 1 the speeds fall like a power of the number of impacts
-        count = min(SETTINGS.block, ceil(log(v / slow) / rate) + 1) if rate else SETTINGS.block
+        count = min(BLOCK, ceil(log(v / slow) / rate) + 1) if rate else BLOCK
         segment = orbit_segment(osc, tau, v, count)
         starts, speeds = np.append(tau, segment.tau), np.append(v, segment.v)
         inside = np.arange(done, np.searchsorted(times, starts[-1]))

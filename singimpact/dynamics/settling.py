@@ -203,7 +203,8 @@ class _Run:
             places = self._caught()
             back = places < 0
             if looks % SETTINGS.searched:
-                back &= self._near(tau[self.open], v[self.open])
+                now, then = (self.tau[self.open], self.v[self.open]), (tau[self.open], v[self.open])
+                back &= apart(now, then, self.study.phases, self.study.fast) < ATTRACTORS.close
             if back.any():
                 places = self._search(places, np.flatnonzero(back), SETTINGS.long_period)
             self._take(places)
@@ -266,11 +267,6 @@ class _Run:
     def _caught(self) -> Array:
         """Of each open state, the place of the known attractor that it is near, or -1."""
         return caught(self.known, self.study.model, self.tau[self.open], self.v[self.open], self.study.fast)
-
-    def _near(self, tau: Array, v: Array) -> Array:
-        """Whether open states are where they were before."""
-        now = self.tau[self.open], self.v[self.open]
-        return apart(now, (tau, v), self.study.phases, self.study.fast) < ATTRACTORS.close
 
     def _search(self, places: Array, chosen: Array, most: int = ATTRACTORS.most_impacts) -> Array:
         """The places with those of attractors that a sample of the chosen open states has reached."""

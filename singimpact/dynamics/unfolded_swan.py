@@ -18,8 +18,8 @@ from singimpact.contact.points import tangency_points
 from singimpact.dynamics.chatter import chatter_limit
 from singimpact.dynamics.invariant_arcs import model_step
 from singimpact.flights.rebound_law import rebound
-from singimpact.inputs import InputError, refuse
-from singimpact.oscillator.model import Oscillator
+from singimpact.inputs import InputError
+from singimpact.oscillator.model import Oscillator, require_model
 from singimpact.result import Result
 from singimpact.status import Status
 from singimpact.surface.impact_surface import Cusp, ImpactSurface, crossing
@@ -192,8 +192,7 @@ def swan_configuration(model: Oscillator, near: Any = None) -> SwanConfiguration
     >>> swan.kind, [round(value, 9) for value in swan.projected["D"]]
     ('negative', [-3.0, 64.0])
     """
-    if not isinstance(model, Oscillator):
-        raise refuse("model", model, "an ImpactOscillator")
+    require_model("model", model)
     points = [(point.tau, point.kind) for point in tangency_points(model) if point.kind != "degenerate"]
     if model.period is not None:
         period = as_float(model.period)

@@ -6,7 +6,7 @@ recurrence of f and g and an expression for rho are emitted as text.  Compiled k
 they are compiled once for all models: those of linear ones, and those of models that are flown in Taylor steps.
 """
 
-from __future__ import annotations
+from __future__ import annotations  # and of the kernels, whose text is compiled here
 
 import ast
 import inspect

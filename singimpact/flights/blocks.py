@@ -162,7 +162,7 @@ class _Parts:
         """All blocks as one."""
         if not issubclass(self.kind, Flight):
             return self.kind(**self.arrays)
-        later = _Later(self.shape, self.rare, self.later) if self.out is None else _NotKept()
+        later = _Later(self.shape, self.rare, self.later) if self.out is None else _not_kept
         return self.kind.made(later, **self.arrays, notes=self.notes)
 
 
@@ -184,11 +184,9 @@ class _Later:
         return {each: np.concatenate([block[each] for block in blocks]).reshape(self.shape) for each in blocks[0]}
 
 
-class _NotKept:
+def _not_kept(name: str) -> dict[str, Any]:
     """The fields of a result whose arrays the caller gave."""
-
-    def __call__(self, name: str) -> dict[str, Any]:
-        raise AttributeError(f"{name} was not kept: name it in out=, or leave out= away")
+    raise AttributeError(f"{name} was not kept: name it in out=, or leave out= away")
 
 
 def gathered(kind: Any, results: list[Any], shape: tuple[int, ...]) -> Any:

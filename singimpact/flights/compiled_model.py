@@ -1,7 +1,5 @@
 """`CompiledModel`: all that the flights of a model need, prepared once, and the one place that calls a kernel."""
 
-from __future__ import annotations
-
 import ctypes
 from collections.abc import Callable, Sequence
 from functools import lru_cache, partial
@@ -45,13 +43,13 @@ Work = tuple[Callable[..., int], int]
 
 
 @lru_cache(maxsize=256)
-def compiled_model(osc: Oscillator) -> CompiledModel:
+def compiled_model(osc: Oscillator) -> "CompiledModel":
     """The compiled model of an oscillator with the default horizon, accuracy and number of steps."""
     return allowed(osc, Allowance(horizon_of(osc, None), steps=steps_of(osc), reach=reach_of(osc)))
 
 
 @lru_cache(maxsize=64)
-def allowed(osc: Oscillator, allowance: Allowance) -> CompiledModel:
+def allowed(osc: Oscillator, allowance: Allowance) -> "CompiledModel":
     """The compiled model of an oscillator under other rules."""
     return CompiledModel(osc, allowance)
 
@@ -318,9 +316,8 @@ class CompiledModel:
         if len(self.walls) == 2:
             across = (codes == ACROSS) | (codes == ACROSS + NOT_REFINED)
             codes -= across * np.int8(ACROSS)
-            side = np.where(across, -1.0, 1.0)
-            for column in (VELOCITY, VELOCITY_BY_TAU, VELOCITY_BY_V):
-                rows[column] *= side
+            for column in (VELOCITY, VELOCITY_BY_TAU, VELOCITY_BY_V):  # rows of flights that did not end are not filled
+                rows[column, across] *= -1.0
         return codes, rows
 
     def _compiled_hits(
@@ -545,7 +542,7 @@ class CompiledModel:
         """
         return self.follow_all(np.array([tau]), np.array([v]), np.array([times.size]), times, height)
 
-    def follow_all(self, tau: Array, v: Array, counts: Array, times: Array, height: float = 0.0) -> Array:
+    def follow_all(self, tau: Array, v: Array, counts: Array, times: Array, height: Array | float = 0.0) -> Array:
         """`follow` of many flights, one after the other: counts[i] of the times are those of flight i."""
         out, states = np.full((times.size, 2), np.nan), np.stack([tau, v, np.full(tau.size, height)], axis=1)
         if times.size:

@@ -5,8 +5,6 @@ Kernels use much of Python, and numba takes half a minute for them: their object
 writes down in a tenth of a second.
 """
 
-from __future__ import annotations
-
 import ast
 import inspect
 import math

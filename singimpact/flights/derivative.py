@@ -7,6 +7,7 @@ The determinant is the product of Liouville's formula, to full relative accuracy
 A flight that contracts by e^(-70) leaves two equal columns of D G in doubles; this product knows its determinant.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from math import isnan
@@ -20,9 +21,10 @@ from singimpact.algebra.numbers import Array, as_float
 from singimpact.algebra.rings import DOUBLES
 from singimpact.flights.blocks import in_blocks, many
 from singimpact.flights.compiled_model import allowed, compiled_model
+from singimpact.flights.family import family
 from singimpact.flights.flight_path import many_paths
 from singimpact.flights.horizons import Allowance, horizon_of, steps_of
-from singimpact.flights.impact_map import plain_hit
+from singimpact.flights.impact_map import impact_map, plain_hit
 from singimpact.flights.kernels.state import TIME_BY_TAU, VELOCITY_BY_V
 from singimpact.flights.rebound_law import rebound, rebound_slope
 from singimpact.flights.response import response, response_of_one, touching
@@ -30,8 +32,11 @@ from singimpact.flights.results import SCALAR_STATUS, Derivative
 from singimpact.flights.states import States
 from singimpact.flights.undecided import Flown, flights_and_rows
 from singimpact.flights.walls import at_walls
+from singimpact.inputs import checked_keywords
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.moving_number import with_number
 from singimpact.oscillator.wall_acceleration import acceleration
+from singimpact.result import Result
 from singimpact.status import Status, Wall
 
 
@@ -92,6 +97,52 @@ def derivative(osc: Oscillator, tau: Any, v: Any, *, horizon: Any = None, wall: 
     return Derivative(matrix.reshape(*states.shape, 2, 2), status.reshape(states.shape)[()])
 
 
+@dataclass(frozen=True, eq=False)
+class Sensitivity(Result):
+    """Derivatives of impacts by their states and by numbers of the model.
+
+    Attributes
+    ----------
+    matrix : shape (..., 2, 2 + numbers): of tau' and v', by tau, v and the numbers `over`; nan where there is no plain
+        impact. over : their names. status : of the flights.
+    """
+
+    matrix: Array
+    over: tuple[str, ...]
+    status: Any
+
+
+@checked_keywords
+def sensitivity(osc: Oscillator, tau: Any, v: Any, over: Sequence[str]) -> Sensitivity:
+    """The derivatives of the next impact by its state and by numbers of the model.
+
+    Parameters
+    ----------
+    osc : the model, of one wall. tau, v : states, v >= 0; they broadcast. over : names of numbers, as `bifurcation`
+        takes them.
+
+    Examples
+    --------
+    >>> found = sensitivity(Oscillator("0", "-2", 0, "1/2"), 0, 1, ("restitution",))
+    >>> (found.matrix + 0).tolist()  # T = v, v' = r v
+    [[1.0, 1.0, 0.0], [0.0, 0.5, 1.0]]
+    """
+    for name in over:
+        osc = with_number(osc, name)
+    moving, states = family(osc, over), States.of(osc, tau, v)
+    step = impact_map(osc, states.tau, states.v)
+    matrix = np.full((states.tau.size, 2, 2 + len(over)), np.nan)
+    for i in np.flatnonzero(step.status == Status.hit).tolist():
+        end = moving.end(moving.start, float(states.tau[i]), float(states.v[i]), float(step.flight_time[i]))
+        columns = np.stack([end.by_tau, end.by_v, *end.by_numbers], axis=1)
+        late = -columns[0] / end.by_time[0]
+        _, slope, by_numbers = moving.rebound(float(step.velocity[i]), moving.start)
+        matrix[i] = late, slope * (columns[1] + end.by_time[1] * late)
+        matrix[i, 0, 0] += 1
+        matrix[i, 1, 2:] += by_numbers
+    return Sensitivity(matrix.reshape(*states.shape, 2, -1), tuple(over), step.status.reshape(states.shape)[()])
+
+
 def _of_one(osc: Oscillator, tau: float, v: float) -> tuple[Derivative | None, Flown | None]:
     """D G at a plain hit of two floats; None for all others, with what was flown of them."""
     model = compiled_model(osc)
@@ -125,17 +176,9 @@ def _at_rest(osc: Oscillator, acceleration_there: Array) -> Array:
 # ---- the determinant
 
 
-@dataclass(frozen=True)
-class QuadratureSettings:
-    """Gauss's rule for the integral of a damping that varies along a flight."""
-
-    # nodes of a piece; on a piece of one unit of time 16 nodes are exact to degree 31
-    nodes: int = 16
-    # pieces per period of the forcing, or per unit of time without one
-    pieces: float = 4.0
-
-
-SETTINGS = QuadratureSettings()
+# Of Gauss's rule for the integral of a damping that varies along a flight: nodes of a piece, which on a piece of one
+# unit of time are exact to degree 31; pieces per period of the forcing, or per unit of time without one
+NODES, PIECES = 16, 4.0
 
 
 def log_determinant(
@@ -173,9 +216,9 @@ def _integral_of_damping(osc: Oscillator, tau: Array, v: Array, time: Array) -> 
     if not names_in(slope) & {"x", "xdot", "t"}:
         return as_float(substitute(slope, osc.parameters)) * time
     slope = formula_of_derivative(osc.force(), "xdot")
-    nodes, weights = np.polynomial.legendre.leggauss(SETTINGS.nodes)
+    nodes, weights = np.polynomial.legendre.leggauss(NODES)
     unit = 1.0 if osc.period is None else as_float(osc.period)
-    counts = np.maximum(1, np.ceil(SETTINGS.pieces * time / unit)).astype(int)
+    counts = np.maximum(1, np.ceil(PIECES * time / unit)).astype(int)
     widths = time / counts
     ticks = [
         ((np.arange(n)[:, None] + (1 + nodes) / 2) * width).ravel() for n, width in zip(counts, widths, strict=True)
@@ -184,5 +227,5 @@ def _integral_of_damping(osc: Oscillator, tau: Array, v: Array, time: Array) -> 
     for start, late, way, width in zip(tau, ticks, many_paths(osc, tau, v, ticks), widths, strict=True):
         state = {"x": clearance + way[:, 0], "xdot": way[:, 1], "t": start + late}
         values = evaluate(slope, state, DOUBLES) + np.zeros(len(way))
-        integrals.append(width / 2 * (values.reshape(-1, SETTINGS.nodes) @ weights).sum())
+        integrals.append(width / 2 * (values.reshape(-1, NODES) @ weights).sum())
     return np.array(integrals)

@@ -1,15 +1,26 @@
-"""The numbers of a model in the flat arrays that kernels read, and the rules of its flights."""
+"""The numbers of a model in the flat arrays that kernels read, and the rules of its flights.
 
-from collections.abc import Mapping, Sequence
+They are computed as sums of two doubles, about 32 digits, for many models at once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 
+from singimpact.algebra.balls import Balls, as_rational
 from singimpact.algebra.expressions import (
     Expression,
     Name,
+    Pi,
+    Root,
     add,
+    evaluate,
     multiply,
     names_in,
     negate,
@@ -17,15 +28,15 @@ from singimpact.algebra.expressions import (
     substitute,
     subtract,
 )
-from singimpact.algebra.numbers import Array, as_float
+from singimpact.algebra.numbers import Array, as_float, rational_near
 from singimpact.codegen.scalar import scalar
 from singimpact.codegen.taylor_recurrence import Recurrence
 from singimpact.flights.bind import LAW
 from singimpact.flights.horizons import Allowance
 from singimpact.flights.kernels import layout
+from singimpact.flights.kernels.double_double import product_twice, sum_twice
 from singimpact.flights.kernels.hits import UNIT
 from singimpact.flights.limits import LIMITS, degree_for
-from singimpact.flights.twofold import Twofold, value_of
 from singimpact.inputs import InputError, refuse
 from singimpact.oscillator.linear import form_of
 from singimpact.oscillator.model import Oscillator
@@ -33,6 +44,100 @@ from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION, UPPER, p
 from singimpact.oscillator.rebound import rho_of
 
 EPSILON = UNIT
+
+
+# ---- sums of two doubles: a ring of arrays for trees of constants
+
+
+@dataclass(frozen=True)
+class Twofold:
+    """high + low, numbers or arrays; low is below the last bit of high.
+
+    Examples
+    --------
+    >>> third = TWOFOLDS.power(Twofold.of(3.0), Fraction(-1))
+    >>> (third * Twofold.of(3.0) + Twofold.of(-1.0)).high < 1e-31
+    True
+    """
+
+    high: Any
+    low: Any
+
+    @staticmethod
+    def of(value: Any) -> Twofold:
+        """Doubles as they are."""
+        return Twofold(value, 0.0 * value)
+
+    @staticmethod
+    def near(value: Fraction) -> Twofold:
+        """The nearest one to a rational."""
+        return Twofold(float(value), float(value - Fraction(float(value))))
+
+    def __add__(self, other: Twofold) -> Twofold:
+        return Twofold(*sum_twice(self.high, self.low, other.high, other.low))
+
+    def __mul__(self, other: Twofold) -> Twofold:
+        return Twofold(*product_twice(self.high, self.low, other.high, other.low))
+
+    def inverse(self) -> Twofold:
+        """1/self, by one step of Newton's method."""
+        first = Twofold.of(1.0 / self.high)
+        left = Twofold.of(1.0) + self * Twofold.of(-first.high)
+        return first + left * first
+
+
+class Twofolds:
+    """The ring; sums, products and whole powers of arrays, all other functions element by element."""
+
+    def rational(self, value: Fraction) -> Twofold:
+        return Twofold.near(value)
+
+    def pi(self) -> Twofold:
+        return Twofold.near(rational_near(Pi(), 256))
+
+    def root(self, tree: Root) -> Twofold:
+        return Twofold.near(rational_near(tree, 256))
+
+    def power(self, base: Twofold, exponent: Fraction) -> Twofold:
+        if exponent.denominator != 1:
+            return _each(base, lambda balls, ball: balls.power(ball, exponent))
+        found = Twofold.of(1.0)
+        for _ in range(abs(int(exponent))):
+            found = found * base
+        return found if exponent > 0 else found.inverse()
+
+    def call(self, function: str, argument: Twofold) -> Twofold:
+        return _each(argument, lambda balls, ball: balls.call(function, ball))
+
+
+TWOFOLDS = Twofolds()
+
+
+def _each(argument: Twofold, work: Callable[[Balls, Any], Any]) -> Twofold:
+    """A function of every element, in balls of 192 bits."""
+    balls, highs = Balls(192), np.asarray(argument.high)
+    parts = []
+    for high, low in zip(
+        highs.ravel().tolist(), np.broadcast_to(argument.low, highs.shape).ravel().tolist(), strict=True
+    ):
+        ball = work(balls, balls.rational(Fraction(high) + Fraction(low)))
+        near = Twofold.near(as_rational(ball)) if ball.is_finite() else Twofold(np.nan, np.nan)
+        parts.append((near.high, near.low))
+    result = np.array(parts).reshape(*highs.shape, 2)
+    return Twofold(result[..., 0][()], result[..., 1][()])
+
+
+def value_of(tree: Expression, numbers: Mapping[str, Twofold]) -> Twofold:
+    """A tree of constants and letters; without letters the doubles nearest to it, inf or nan where there is none."""
+    if not names_in(tree):
+        high = as_float(tree)
+        low = float(rational_near(tree, 256) - Fraction(high)) if np.isfinite(high) else 0.0
+        return Twofold(np.float64(high), np.float64(low))
+    with np.errstate(all="ignore"):  # what is no number is refused by who reads it
+        return evaluate(tree, numbers, TWOFOLDS)  # type: ignore[no-any-return]
+
+
+# ---- the numbers of a model
 
 
 def gap_of(osc: Oscillator) -> tuple[float, float]:
@@ -155,7 +260,9 @@ def laid_out(
     parts = [_one_wall(numbers, above, allowance, flow, (laws[0].shape[1], rows)) for above, flow in enumerate(flows)]
     flats = [flat for _, flat in parts]
     flats = flats if flows[0] is None else _of_one_length(flats)
-    return np.maximum.reduce([sizes for sizes, _ in parts]), np.hstack(flats), np.hstack(laws)
+    # those of many members at one wall are not copied: they take megabytes
+    both = np.hstack(flats) if len(flats) > 1 else flats[0]
+    return np.maximum.reduce([sizes for sizes, _ in parts]), both, np.hstack(laws)
 
 
 def _of_one_length(arrays: Sequence[Array]) -> list[Array]:
@@ -230,7 +337,10 @@ def _linear_numbers(numbers: Numbers, above: int, sizes: Array, lengths: tuple[i
         value = numbers.value(tree)
         flat[:, slot], flat[:, slot + 4 * (count if slot >= at + 10 else 1)] = value.high, value.low
     if numbers.period is not None:
-        flat[:, -3:] = _turn_of_batches(numbers.period)
+        # in two parts, the first of 33 bits, and its inverse
+        high = steps_with_few_bits(numbers.period.high, 33)
+        rest = (numbers.period.high - high) + numbers.period.low
+        flat[:, -3:] = np.stack([high, rest, 1 / numbers.period.high], axis=-1)
     return flat, scale
 
 
@@ -248,9 +358,3 @@ def parts_of_turn(period: Twofold) -> Array:
         parts.append(np.ldexp(np.rint(np.ldexp(left.high, 26 - exponent)), exponent - 26))
         left = left + Twofold.of(-parts[-1])
     return np.asarray(np.stack(np.broadcast_arrays(*parts), axis=-1))
-
-
-def _turn_of_batches(period: Twofold) -> Array:
-    """A period in two parts, the first of 33 bits, and its inverse."""
-    high = steps_with_few_bits(period.high, 33)
-    return np.stack([high, (period.high - high) + period.low, 1 / period.high], axis=-1)

@@ -76,14 +76,30 @@ def many_paths(osc: Oscillator, tau: Any, v: Any, times: Sequence[Array]) -> lis
     [array([[2., 1.]]), array([[-1.,  2.]])]
     """
     count_flights(len(times))
-    model = compiled_model(osc)
-    starts = model.near(np.asarray(tau, dtype=float))
-    counts, at = np.array([own.size for own in times], dtype=int), np.concatenate([*times, np.zeros(0)])
-    if model.linear:
-        both = model.places(np.repeat(starts, counts), np.repeat(v, counts), at)
-    else:
-        both = model.follow_all(starts, np.asarray(v, dtype=float), counts, at)
+    counts = np.array([own.size for own in times], dtype=int)
+    both = followed(osc, np.asarray(tau, float), np.asarray(v, float), counts, np.concatenate([*times, np.zeros(0)]))
     return np.split(both, np.cumsum(counts))[:-1]
+
+
+def followed(osc: Oscillator, tau: Array, v: Array, counts: Array, times: Array, heights: Array | float = 0.0) -> Array:
+    """x - c and x' after states, each at as many of the times as `counts` says, shape (times, 2).
+
+    Parameters
+    ----------
+    tau, v : of the states. times : those of a state run away from 0. heights : x - c at the states.
+
+    Examples
+    --------
+    >>> two = np.array([1, 1])
+    >>> followed(Oscillator("0", "-2", 0, 1), np.zeros(2), np.zeros(2), two, np.ones(2), np.array([1.0, 2.0])).tolist()
+    [[0.0, -2.0], [1.0, -2.0]]
+    """
+    model = compiled_model(osc)
+    starts = model.near(tau)
+    if model.linear:
+        above = heights if np.ndim(heights) == 0 else np.repeat(heights, counts)
+        return model.places(np.repeat(starts, counts), np.repeat(v, counts), times, above)
+    return model.follow_all(starts, v, counts, times, heights)
 
 
 def along(osc: Oscillator, tau: Array, v: Array, which: Array, times: Array) -> Array:
@@ -98,13 +114,9 @@ def along(osc: Oscillator, tau: Array, v: Array, which: Array, times: Array) -> 
     >>> along(Oscillator("0", "-2", 0, 1), np.zeros(2), np.array([3.0, 1.0]), np.array([0, 1]), np.ones(2)).tolist()
     [[2.0, 1.0], [0.0, -1.0]]
     """
-    used, at, counts = np.unique(which, return_inverse=True, return_counts=True)
-    model, speeds = compiled_model(osc), v[used]
-    launches = model.near(tau[used])
+    used, counts = np.unique(which, return_counts=True)
     count_flights(used.size)
-    if not model.linear:
-        return model.follow_all(launches, speeds, counts, times)
-    return model.places(launches[at], speeds[at], times)
+    return followed(osc, tau[used], v[used], counts, times)
 
 
 def dropped(osc: Oscillator, start: tuple[float, float, float], times: Array) -> Array:
@@ -120,11 +132,7 @@ def dropped(osc: Oscillator, start: tuple[float, float, float], times: Array) ->
     [[3.0, -2.0], [0.0, -4.0]]
     """
     tau, v, height = start
-    model = compiled_model(osc)
-    if not model.linear:
-        return model.follow(float(model.near(np.array([tau]))[0]), v, times, height)
-    one = np.ones(times.shape)
-    return model.places(model.near(tau * one), v * one, times, height)
+    return followed(osc, np.array([tau]), np.array([v]), np.array([times.size]), times, height)
 
 
 def ends(osc: Oscillator, tau: Array, v: Array, times: Array) -> tuple[Array, Array, Array]:
@@ -136,14 +144,21 @@ def ends(osc: Oscillator, tau: Array, v: Array, times: Array) -> tuple[Array, Ar
     [[0.0], [-3.0], [-2.0]]
     """
     count_flights(tau.size)
-    model, rows, ended = compiled_model(osc), np.full((tau.size, 2), np.nan), np.isfinite(times)
-    start, velocity, time = model.near(tau)[ended], v[ended], times[ended]
-    if model.linear:
-        rows[ended] = model.places(start, velocity, time)
-    else:
-        rows[ended] = model.follow_all(start, velocity, np.ones(time.size, int), time)
+    rows, ended = np.full((tau.size, 2), np.nan), np.isfinite(times)
+    rows[ended] = followed(osc, tau[ended], v[ended], np.ones(np.count_nonzero(ended), int), times[ended])
     position, speed = rows.T
+    return position, speed, acceleration_off_wall(osc, position, speed, tau + times)
+
+
+def acceleration_off_wall(osc: Oscillator, position: Array, speed: Array, t: Array | float = 0.0) -> Array:
+    """x'' = g - f where x - c and x' are given, at times t.
+
+    Examples
+    --------
+    >>> acceleration_off_wall(Oscillator("x", "cos(t)", 1, 1), np.ones(1), np.zeros(1)).tolist()
+    [-1.0]
+    """
+    state = {"x": as_float(osc.clearance) + position, "xdot": speed, "t": t}
     with np.errstate(all="ignore"):
-        state = {"x": as_float(osc.clearance) + position, "xdot": speed, "t": tau + times}
         forcing, force = (evaluate(tree, state, DOUBLES) for tree in (osc.forcing(), osc.force()))
-        return position, speed, np.asarray(forcing - force + 0 * position)
+        return np.asarray(forcing - force + 0 * position)

@@ -158,13 +158,10 @@ def _of_nonlinear(osc: Oscillator, over: Mapping[str, Array], period: Any, clear
     above = clearance + np.concatenate([0.0 * amplitudes[..., :1], amplitudes], axis=-1)
     forcing = osc.forcing(frozenset(over))
     with np.errstate(all="ignore"):
+        moving = evaluate(forcing, {**over, "t": phases}, DOUBLES)
         if osc.parametric:
             at_rest = {"x": clearance, "xdot": 0.0, "t": phases}
-            moving = evaluate(forcing, {**over, "t": phases}, DOUBLES) - evaluate(
-                osc.force(frozenset(over)), {**over, **at_rest}, DOUBLES
-            )
-        else:
-            moving = evaluate(forcing, {**over, "t": phases}, DOUBLES)
+            moving = moving - evaluate(osc.force(frozenset(over)), {**over, **at_rest}, DOUBLES)
         moving = moving + 0 * phases
         force = _mean_force(osc, over, above, phases)
         average = 0.0 if period is None else moving.mean(axis=-1, keepdims=True)

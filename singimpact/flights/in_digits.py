@@ -1,7 +1,5 @@
 """The impact map in many digits, from nothing but the exact state: proved where balls can, else two runs that agree."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from math import inf, nan
 from typing import Any, NamedTuple
@@ -9,12 +7,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from singimpact.algebra.certified import from_ball
-from singimpact.algebra.expressions import Expression
 from singimpact.algebra.numbers import Array, as_mpf, sign_of
 from singimpact.algebra.precision import digits_at, for_user
 from singimpact.flights import undecided
 from singimpact.flights.compiled_model import allowed
-from singimpact.flights.enclosures.certified_hit import ENCLOSURE, Launch, ProvedImpact, certified_hit
+from singimpact.flights.enclosures.certified_hit import ENCLOSURE, Launch, certified_hit
 from singimpact.flights.enclosures.equation import NoHit, Refused
 from singimpact.flights.horizons import Allowance
 from singimpact.flights.kernels.entries import HITS
@@ -101,7 +98,7 @@ def flights(osc: Oscillator, states: States, digits: int, allowance: Allowance) 
     )
 
 
-def _plain_hit(osc: Oscillator, states: States, digits: int, allowance: Allowance) -> Flight | Proof | None:
+def _plain_hit(osc: Oscillator, states: States, digits: int, allowance: Allowance) -> "Flight | Proof | None":
     """One state of a Taylor flow that doubles bring back and balls prove; what balls prove else, None for nothing.
 
     Most calls are of this kind, and arrays of one number would take as long as the proof of a weak impact.
@@ -144,7 +141,7 @@ def _proof(
     horizon: float,
     lost: dict[int, tuple[int, Array, int]],
     roughs: tuple[Array, Array, Array],
-) -> Proof:
+) -> "Proof":
     """The proof of a flight in balls; one that is proved in doubles never to return needs no other.
 
     Towards a point where f or g is not analytic the steps in balls shorten without end: such a flight is not tried.
@@ -268,7 +265,11 @@ def proof(
         return Proof(None, None, None, f"proved: {none}", missed=True)
     except (Refused, ArithmeticError, ValueError, TypeError) as reason:  # a ball that left the domain of a function
         return Proof(None, None, None, str(reason) or type(reason).__name__)
-    return _certified(hit, digits, osc, launch)
+    if not (hit.v > 0 or (osc.plastic and hit.velocity < 0)):
+        return Proof(hit.flight_time, hit.velocity, None, "the velocity after the impact is not shown positive")
+    time, velocity, tau, v = (from_ball(ball, digits) for ball in (hit.flight_time, hit.velocity, hit.tau, hit.v))
+    # a certificate names the model and the launch
+    return Proof(hit.flight_time, hit.velocity, CertifiedImpact(time, velocity, tau, v, osc, launch))
 
 
 def _expected(rough: tuple[float, float] | None) -> tuple[float, float]:
@@ -277,11 +278,3 @@ def _expected(rough: tuple[float, float] | None) -> tuple[float, float]:
         return inf, 1.0
     time, condition = rough
     return (time, condition if condition > 1 else 1.0) if time > 0 else (0.0, 1.0)
-
-
-def _certified(hit: ProvedImpact, digits: int, osc: Oscillator, launch: tuple[Expression, Expression]) -> Proof:
-    """The proof of a hit, with the model and the launch, which a certificate names."""
-    if not (hit.v > 0 or (osc.plastic and hit.velocity < 0)):
-        return Proof(hit.flight_time, hit.velocity, None, "the velocity after the impact is not shown positive")
-    time, velocity, tau, v = (from_ball(ball, digits) for ball in (hit.flight_time, hit.velocity, hit.tau, hit.v))
-    return Proof(hit.flight_time, hit.velocity, CertifiedImpact(time, velocity, tau, v, osc, launch))

@@ -112,21 +112,20 @@ class Interpreter:
 
     def variations(self, tau: Array, v: Array, times: Array, out: Array) -> None:
         """`linear_variations` or `taylor_variations`."""
-        work, columns = self.work()
-        rows = out.tolist()
-        given = (tau.tolist(), v.tolist(), times.tolist(), self.model, work)
         if self.linear:
-            self.space["linear_variations"](*given, rows)
+            self._fill("linear_variations", (tau, v, times), out)
         else:
-            self.space["taylor_variations"](*given, columns, rows)
+            self._fill("taylor_variations", (tau, v, times), out, self.work()[1])
+
+    def _fill(self, name: str, given: tuple[Array, ...], out: Array, *more: Any) -> None:
+        """Results of a kernel that takes columns, the model, scratch and perhaps more."""
+        rows = out.tolist()
+        self.space[name](*(column.tolist() for column in given), self.model, self.work()[0], *more, rows)
         out[...] = rows
 
     def places(self, tau: Array, v: Array, times: Array, out: Array) -> None:
         """`linear_places`."""
-        work, _ = self.work()
-        rows = out.tolist()
-        self.space["linear_places"](tau.tolist(), v.tolist(), times.tolist(), self.model, work, rows)
-        out[...] = rows
+        self._fill("linear_places", (tau, v, times), out)
 
     def follow(self, states: Array, counts: Array, times: Array, out: Array) -> None:
         """`follow` of Taylor flows from rows of t, x', x - c, each at as many of the times as `counts` says."""
@@ -142,7 +141,4 @@ class Interpreter:
 
     def judged(self, tau: Array, v: Array, removed: Array, out: Array, room: int) -> None:
         """`judged_hits`."""
-        work, columns = self.work()
-        trace, rows = [[0.0] * 4 for _ in range(room)], out.tolist()
-        self.space["judged_hits"](tau.tolist(), v.tolist(), removed.tolist(), self.model, work, columns, trace, rows)
-        out[...] = rows
+        self._fill("judged_hits", (tau, v, removed), out, self.work()[1], [[0.0] * 4 for _ in range(room)])

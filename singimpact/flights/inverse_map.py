@@ -132,9 +132,7 @@ def _in_digits(states: States, hit: Any, speeds: Any, digits: int) -> dict[str, 
         for index, (time, speed) in enumerate(zip(np.ravel(hit.flight_time), np.ravel(hit.velocity), strict=True)):
             fields["tau"][index] = for_user(as_mpf(states.exact_tau(index), mp) - mp.convert(time))
             fields["v"][index] = for_user(abs(mp.convert(speed)))
-            fields["velocity"][index] = for_user(-_number(speeds[index], mp))
+            before = speeds[index]
+            plain = isinstance(before, int | float) or hasattr(before, "_mpf_")
+            fields["velocity"][index] = for_user(-(mp.mpf(before) if plain else as_mpf(before, mp)))
     return fields
-
-
-def _number(value: Any, mp: Any) -> Any:
-    return mp.mpf(value) if isinstance(value, int | float) or hasattr(value, "_mpf_") else as_mpf(value, mp)

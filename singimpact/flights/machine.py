@@ -5,8 +5,6 @@ takes: a tenth of a second for a model's own text.  Only where no object code of
 they compiled too, which takes a minute, once a cache.
 """
 
-from __future__ import annotations
-
 import ctypes
 import hashlib
 import os
@@ -53,7 +51,7 @@ FEW = 32
 
 
 @lru_cache(maxsize=256)
-def machine_of(emitted: Emitted) -> Machine:
+def machine_of(emitted: Emitted) -> "Machine":
     """The machine of a text, one in a process."""
     return Machine(emitted)
 

@@ -4,8 +4,6 @@ What a model costs beside its flights is the filling of its tables. All else (tr
 computed for all of them at once, over arrays of numbers in two doubles.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property

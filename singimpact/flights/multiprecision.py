@@ -158,7 +158,8 @@ def flown(osc: Oscillator, states: States, index: int, digits: int, limit: float
 def _march(
     osc: Oscillator, states: States, index: int, v: Any, removed: int, limits: tuple[float, int], mp: Any
 ) -> Outcome:
-    space = over_mpmath(mp, _flow(osc), exact_restart=False)
+    source = "" if linear_form(osc) is not None else recurrence_of(osc).source
+    space = over_mpmath(mp, source, exact_restart=False)
     order = degree_for(float(mp.eps)) if mp.prec < 1000 else int(mp.prec / 2.15)
     order += removed - 1
     rules = Rules(mp.mpf(limits[0]), limits[1], order, order, 8 * mp.eps, 0, 0, 0, 0, 0, 0, gap_in_digits(osc, mp), 0)
@@ -182,10 +183,6 @@ def at_wall(code: int, numbers: Any) -> Outcome:
 def gap_in_digits(osc: Oscillator, mp: Any) -> Any:
     """The distance of both walls; inf of a model with one."""
     return mp.inf if osc.upper is None else as_mpf(subtract(osc.upper, osc.clearance), mp)
-
-
-def _flow(osc: Oscillator) -> str:
-    return "" if linear_form(osc) is not None else recurrence_of(osc).source
 
 
 @lru_cache(maxsize=64)

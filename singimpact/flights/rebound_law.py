@@ -91,7 +91,7 @@ def speed_before(osc: Oscillator, v: Array) -> Array:
     v = np.asarray(v, dtype=float)
     low, high = np.zeros(v.shape), v / as_float(osc.slope_at_rest())
     for _ in range(DOUBLINGS):
-        below = _below(osc, high, v)
+        below = _still_below(*_rebound(osc, high), v)
         if not below.any():
             break
         low, high = np.where(below, high, low), np.where(below, 2 * high, high)
@@ -133,10 +133,6 @@ def _rebound(osc: Oscillator, speed: Array) -> tuple[Array, Array]:
     """rho(-U), and its slope along U."""
     with np.errstate(all="ignore"):
         return rebound(osc, -speed), -np.asarray(rebound_slope(osc, -speed), dtype=float)
-
-
-def _below(osc: Oscillator, speed: Array, v: Array) -> Array:
-    return _still_below(*_rebound(osc, speed), v)
 
 
 def _still_below(value: Array, slope: Array, v: Array) -> Array:

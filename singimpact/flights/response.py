@@ -111,20 +111,16 @@ def with_bend(parts: Any, velocity: Any, acceleration_there: Any) -> Response:
 def _acceleration(osc: Oscillator, tau: Array, time: Array, velocity: Array) -> Array:
     """x'' at the hits."""
     start = tau if osc.period is None else reduced(tau, osc.period)
+    lower = as_float(osc.clearance)
+    x = lower if osc.upper is None else np.where(velocity > 0, as_float(osc.upper), lower)
     with np.errstate(all="ignore"):
-        state = {"x": _places(osc, velocity), "xdot": velocity, "t": start + time}
+        state = {"x": x, "xdot": velocity, "t": start + time}
         forcing = evaluate(osc.forcing(), state, DOUBLES) + 0 * velocity
         difference = np.asarray(forcing - evaluate(osc.force(), state, DOUBLES))
         # where g and f nearly cancel, doubles keep too few digits of x''
         for index in np.flatnonzero(np.abs(difference) < LIMITS.cancelled * np.abs(forcing)):
             difference[index] = _cancelled(osc, start[index] + time[index], velocity[index])
     return difference
-
-
-def _places(osc: Oscillator, velocity: Array) -> Any:
-    """x at hits with these velocities."""
-    lower = as_float(osc.clearance)
-    return lower if osc.upper is None else np.where(velocity > 0, as_float(osc.upper), lower)
 
 
 def _cancelled(osc: Oscillator, at: float, velocity: float) -> float:

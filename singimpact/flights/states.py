@@ -1,7 +1,5 @@
 """States that flights start from: read once, checked, broadcast; a mass at rest at a zero of a_c."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -62,7 +60,7 @@ class States:
     turns: Any = 0.0
 
     @staticmethod
-    def of(osc: Oscillator, tau: Any, v: Any, digits: int | None = None) -> States:
+    def of(osc: Oscillator, tau: Any, v: Any, digits: int | None = None) -> "States":
         """`read`, and what a model does with a mass at rest: next to a zero of a_c, a double is that zero."""
         if _doubles(tau) and _doubles(v) and tau.shape == v.shape and tau.size:
             times, speeds = tau.ravel(), v.ravel()
@@ -82,7 +80,7 @@ class States:
         return replace(states, rest=rest)
 
     @staticmethod
-    def read(tau: Any, v: Any) -> States:
+    def read(tau: Any, v: Any) -> "States":
         """Check and broadcast a caller's tau and v."""
         require_room(("tau", tau), ("v", v))
         if _plain(tau) and _plain(v) and tau.shape == v.shape and (v >= 0).all():  # arrays of doubles as they stand
@@ -103,7 +101,7 @@ class States:
             raise refuse("v", float(speeds[speeds < 0][0]), "velocities >= 0, just after an impact")
         return States(times, speeds, shape, (written[0].ravel(), written[1].ravel()))
 
-    def in_period(self, osc: Oscillator) -> States:
+    def in_period(self, osc: Oscillator) -> "States":
         """These launches; those beyond a period that no double holds, and late ones, start from their phase.
 
         Examples

@@ -1,7 +1,5 @@
 """First hits of arrays of states, and the few that end in no plain hit: at rest, near a graze, escaped, given up."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache, partial
@@ -59,7 +57,7 @@ class Fates:
     above: Array
 
     @staticmethod
-    def of(codes: Array, rows: Array) -> Fates:
+    def of(codes: Array, rows: Array) -> "Fates":
         """Flights as a kernel left them."""
         return Fates(*decoded(codes), rows, codes >= ACROSS)
 

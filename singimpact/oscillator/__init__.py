@@ -7,6 +7,7 @@ from singimpact.handed_on import names_of
 
 _FILES = {
     "linear": "linear_form",
+    "moving_number": "value_of with_number",
     "model": "FIELDS Oscillator fields_of read_fields",
     "rho_series": "series_of_rho",
     "wall_acceleration": "acceleration",

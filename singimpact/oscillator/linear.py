@@ -30,10 +30,7 @@ from singimpact.algebra.expressions import (
 from singimpact.algebra.numbers import sign_of
 from singimpact.inputs import InputError
 from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.period import linear_in_t
-
-# Names in f that are no parameters
-MOVING = frozenset({"x", "xdot"})
+from singimpact.oscillator.period import affine
 
 
 @dataclass(frozen=True)
@@ -81,7 +78,7 @@ def form_of(force: Expression, forcing: Expression) -> LinearForm | None:
     >>> print(form.stiffness, form.harmonics[0].rate)
     k w
     """
-    pull = _affine(force)
+    pull = affine(force, ("x", "xdot"))
     if pull is None or "t" in names_in(pull[0]) | names_in(pull[1]):
         return None
     stiffness, damping, offset = pull
@@ -92,28 +89,6 @@ def form_of(force: Expression, forcing: Expression) -> LinearForm | None:
         return None
     steady, harmonics = waves
     return LinearForm(damping, stiffness, subtract(steady, offset), tuple(harmonics))
-
-
-def _affine(tree: Expression) -> tuple[Expression, Expression, Expression] | None:
-    """(k, d, m) of k x + d xdot + m."""
-    if not names_in(tree) & MOVING:
-        return number(0), number(0), tree
-    if isinstance(tree, Name):
-        return number(int(tree.name == "x")), number(int(tree.name == "xdot")), number(0)
-    if isinstance(tree, Sum):
-        parts = [_affine(term) for term in tree.terms]
-        forms = [form for form in parts if form is not None]
-        if len(forms) < len(parts):
-            return None
-        return add(*(p[0] for p in forms)), add(*(p[1] for p in forms)), add(*(p[2] for p in forms))
-    if isinstance(tree, Product):
-        moving = [factor for factor in tree.factors if names_in(factor) & MOVING]
-        inner = _affine(moving[0]) if len(moving) == 1 else None
-        if inner is None:
-            return None
-        rest = [factor for factor in tree.factors if factor is not moving[0]]
-        return multiply(*rest, inner[0]), multiply(*rest, inner[1]), multiply(*rest, inner[2])
-    return None
 
 
 def _waves(tree: Expression, factor: Expression | None = None) -> tuple[Expression, list[Harmonic]] | None:
@@ -132,7 +107,7 @@ def _waves(tree: Expression, factor: Expression | None = None) -> tuple[Expressi
 
 
 def _wave(tree: Call, factor: Expression) -> tuple[Expression, list[Harmonic]] | None:
-    inner = linear_in_t(tree.argument)
+    inner = affine(tree.argument, ("t",))
     if inner is None:
         return None
     rate, phase = inner

@@ -12,6 +12,7 @@ from singimpact.algebra.expressions import FUNCTIONS, Call, Expression, Name, na
 from singimpact.algebra.numbers import compare, constant, tree_of
 from singimpact.algebra.puiseux import Puiseux
 from singimpact.algebra.rings import to_sympy
+from singimpact.handed_on import sympy
 from singimpact.inputs import InputError, checked_methods, refuse, require_known, shown, unknown
 from singimpact.oscillator import rebound
 from singimpact.oscillator.period import checked_period, moving_in_time, period_of
@@ -350,6 +351,12 @@ def require_rebound(osc: Oscillator, what: str) -> None:
         raise InputError(f"restitution = 0 is not accepted here: {what} needs impacts that rebound, give a number > 0")
 
 
+def require_model(name: str, value: object) -> None:
+    """Refuse what is not a model."""
+    if not isinstance(value, Oscillator):
+        raise refuse(name, value, "an ImpactOscillator")
+
+
 def not_smooth(osc: Oscillator, what: str) -> InputError:
     """The refusal of a restitution that is not smooth at rest."""
     return InputError(
@@ -440,8 +447,6 @@ def equation(osc: Oscillator) -> str:
 
 def latex(tree: Expression) -> str:
     """LaTeX of an expression of a model; x' has its dot."""
-    import sympy
-
     found = sympy.sympify(to_sympy(tree))
     return str(sympy.latex(found, symbol_names={each: latex_name(each.name) for each in found.free_symbols}))
 
@@ -454,8 +459,6 @@ def latex_name(name: str) -> str:
     >>> [latex_name(name) for name in ("omega", "mu_1", "damping", "A", "xdot")]
     ['\\\\omega', '\\\\mu_{1}', '\\\\mathrm{damping}', 'A', '\\\\dot x']
     """
-    import sympy
-
     letters = str(sympy.latex(sympy.Symbol(name)))
     word = letters.isalpha() and len(letters) > 1
     return r"\dot x" if name == "xdot" else rf"\mathrm{{{letters}}}" if word else letters

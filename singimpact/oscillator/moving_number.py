@@ -3,7 +3,7 @@
 from collections.abc import Collection
 from typing import Any
 
-from singimpact.algebra.expressions import Expression, Name, add, multiply, names_in, number
+from singimpact.algebra.expressions import Call, Expression, Name, Product, Sum, add, multiply, names_in, number
 from singimpact.algebra.numbers import as_float
 from singimpact.inputs import InputError, unknown
 from singimpact.oscillator.model import Oscillator
@@ -89,8 +89,6 @@ def period_over(osc: Oscillator, names: Collection[str]) -> Expression | None:
 
 def _shifted(g: Any, letter: Name) -> Any:
     """g with a phase added to the arguments of its waves."""
-    from singimpact.algebra.expressions import Call, Product, Sum
-
     match g:
         case Sum(parts):
             return add(*(_shifted(term, letter) for term in parts))

@@ -3,7 +3,7 @@
 The phase of a launch is reduced without loss: tau is an exact number, however large.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from functools import lru_cache
 from math import ceil, gcd, inf, lcm
@@ -32,24 +32,29 @@ from singimpact.algebra.numbers import Array, compare, constant, rational_near
 from singimpact.inputs import InputError, refuse, shown
 
 
-def linear_in_t(tree: Expression) -> tuple[Expression, Expression] | None:
-    """(rate, phase) of rate*t + phase with constant rate and phase, or None."""
-    if "t" not in names_in(tree):
-        return number(0), tree
+def affine(tree: Expression, names: Sequence[str]) -> tuple[Expression, ...] | None:
+    """The coefficients of names, and what is left, of a sum of multiples of them; None where it is none.
+
+    Examples
+    --------
+    >>> from singimpact.algebra.parsing import parse
+    >>> [str(part) for part in affine(parse("2*(x + 3) - k*xdot", ("x", "xdot", "k")), ("x", "xdot"))]
+    ['2', '-k', '6']
+    """
+    if not names_in(tree).intersection(names):
+        return *(number(0) for _ in names), tree
     if isinstance(tree, Name):
-        return number(1), number(0)
+        return *(number(int(tree.name == name)) for name in names), number(0)
     if isinstance(tree, Sum):
-        parts = [linear_in_t(term) for term in tree.terms]
-        if any(rate is None for rate in parts):
-            return None
-        return add(*(rate[0] for rate in parts if rate)), add(*(rate[1] for rate in parts if rate))
+        parts = [affine(term, names) for term in tree.terms]
+        forms = [form for form in parts if form is not None]
+        return tuple(add(*column) for column in zip(*forms, strict=True)) if len(forms) == len(parts) else None
     if isinstance(tree, Product):
-        moving = [factor for factor in tree.factors if "t" in names_in(factor)]
-        inner = linear_in_t(moving[0]) if len(moving) == 1 else None
-        if inner is None:
-            return None
-        rest = [factor for factor in tree.factors if factor is not moving[0]]
-        return multiply(*rest, inner[0]), multiply(*rest, inner[1])
+        moving = [factor for factor in tree.factors if names_in(factor).intersection(names)]
+        inner = affine(moving[0], names) if len(moving) == 1 else None
+        if inner is not None:
+            rest = [factor for factor in tree.factors if factor is not moving[0]]
+            return tuple(multiply(*rest, coefficient) for coefficient in inner)
     return None
 
 
@@ -58,7 +63,7 @@ def _frequencies(tree: Expression) -> list[Expression] | None:
     if "t" not in names_in(tree):
         return []
     if isinstance(tree, Call) and tree.function in ("sin", "cos", "tan"):
-        inner = linear_in_t(tree.argument)
+        inner = affine(tree.argument, ("t",))
         if inner is not None:
             return [multiply(number(2), inner[0]) if tree.function == "tan" else inner[0]]
     if isinstance(tree, Name):

@@ -175,7 +175,8 @@ def as_ball(osc: Oscillator, tau: Expression, order: int = 0) -> Any:
 
 
 def _ball(osc: Oscillator, tau: Expression, order: int, bits: int) -> Any:
-    balls = Balls(bits + _exponent(tau))
+    # a large tau needs as many bits more as its exponent has
+    balls = Balls(bits + 64 + max(int(np.frexp(abs(as_float(tau)))[1]), 0))
     return around(osc, balls.evaluate(tau, {}), order, balls)
 
 
@@ -197,10 +198,6 @@ def around(osc: Oscillator, start: Any, order: int, balls: Balls) -> Any:
         jet = space.evaluate(_moving_part(osc)[0], {"t": moved})
         # log has a slope on paper where it is no number: nan goes on to it
         return jet.coefficient((order,)) * factorial(order) + 0 * jet.coefficient((0,))
-
-
-def _exponent(tau: Expression) -> int:
-    return 64 + max(int(np.frexp(abs(as_float(tau)))[1]), 0)
 
 
 def sign_of_acceleration(osc: Oscillator, tau: Expression, order: int = 0) -> int:

@@ -21,6 +21,6 @@ _FILES = {
     "explore": "CURVES explore_page",
     "scene": "LAYERS LONGEST_TEXT Scene",
     "layer_data": "keep recall",
-    "style": "BLUE EVENT_PENS LINES MARKS ON_DARK PENS Pen VERMILLION on_dark orbit_color orbit_width",
+    "style": "BLUE EVENT_PENS LINES MARKS ON_DARK PENS Pen VERMILLION new_axes on_dark orbit_color orbit_width",
 }
 __getattr__ = names_of(__name__, _FILES)

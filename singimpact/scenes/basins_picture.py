@@ -1,4 +1,4 @@
-"""Pictures of basins, also before and after a transition of P; classes differ in lightness too."""
+"""Pictures of basins, also before and after a transition of P, and of regions; classes differ in lightness too."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -6,13 +6,19 @@ from typing import Any
 import numpy as np
 
 from singimpact.branches.transitions import BothSides
-from singimpact.dynamics.basins_of_attraction import Basins
+from singimpact.dynamics.basins_of_attraction import Basins, ClassGrid
+from singimpact.dynamics.regions import Regions
 from singimpact.inputs import refuse
 from singimpact.oscillator.moving_number import value_of, with_number
 from singimpact.scenes.label_places import legend_below, legend_entries
 from singimpact.scenes.scene import LAYERS, Scene
-from singimpact.scenes.style import CHATTERED, CLASS_ORBITS, CLASSES, GREY, OPEN, PENS, VERMILLION
+from singimpact.scenes.style import CHATTERED, CLASS_ORBITS, CLASSES, GREY, LETTERS, OPEN, PENS, VERMILLION, new_axes
 
+MEASURES = {
+    "lyapunov": "larger exponent, per unit of time",
+    "rest": "share of time at rest",
+    "impacts": "impacts a period",
+}
 LABELS = {
     "tau": r"launch phase $\tau$",
     "v": "launch velocity $v$",
@@ -21,7 +27,30 @@ LABELS = {
 }
 
 
-def draw_basins(found: Basins, axes: Any = None, colors: Sequence[str] | None = None) -> Any:
+def draw_regions(result: Regions, axes: Any = None) -> Any:
+    """Regions over two numbers: their classes, or a number with its scale; returns the matplotlib axes.
+
+    On axes with curves over the same numbers these stay above the regions.
+    """
+    if result.values is None:
+        return draw_basins(result, axes)
+    axes = new_axes(7.2, 5.2) if axes is None else axes
+    image = axes.imshow(
+        result.values,
+        origin="lower",
+        extent=_box(result),
+        aspect="auto",
+        interpolation="nearest",
+        cmap="cividis",
+        gid="regions",
+    )
+    axes.figure.colorbar(image, ax=axes, label=MEASURES.get(result.of, result.of))
+    (across, _), (up, _) = result.sides
+    axes.set(xlabel=LETTERS.get(across, across), ylabel=LETTERS.get(up, up))
+    return axes
+
+
+def draw_basins(found: ClassGrid, axes: Any = None, colors: Sequence[str] | None = None) -> Any:
     """The classes of a grid of states as a picture; returns the matplotlib axes.
 
     `colors` : of the classes, in the order of `found.classes`; those of `class_colors` without it.
@@ -31,7 +60,7 @@ def draw_basins(found: Basins, axes: Any = None, colors: Sequence[str] | None = 
     return _painted(found, layers, colors, axes)
 
 
-def class_colors(several: Sequence[Basins]) -> list[list[str]]:
+def class_colors(several: Sequence[ClassGrid]) -> list[list[str]]:
     """Colours of the classes of some basins, each in the order of its `classes`; one (n, k) has one colour in all.
 
     Examples
@@ -66,26 +95,30 @@ def draw_first_chatter(found: Basins, axes: Any = None) -> Any:
     return _painted(found, layers, [VERMILLION, CLASSES["not decided"]], axes)
 
 
-def _painted(basins: Basins, layers: list[tuple[Any, str]], colors: list[str], axes: Any) -> Any:
+def _box(found: ClassGrid) -> tuple[float, float, float, float]:
+    """The ends of both axes, half a cell beyond the first and last values."""
+    ends = [(values[0], values[-1], np.diff(values[:2])[0] / 2) for _, values in found.sides]
+    (left, right, wide), (low, high, tall) = ends
+    return left - wide, right + wide, low - tall, high + tall
+
+
+def _painted(basins: ClassGrid, layers: list[tuple[Any, str]], colors: list[str], axes: Any) -> Any:
     from matplotlib.colors import to_rgb
     from matplotlib.patches import Patch
 
-    axes = _new_axes(7.2, 5.2) if axes is None else axes
+    axes = new_axes(7.2, 5.2) if axes is None else axes
     image, entries = np.empty((*basins.codes.shape, 3)), dict[str, Any]()
     for (where, label), color in zip(layers, colors, strict=True):
         image[where] = to_rgb(color)
         entries[label] = Patch(facecolor=color, edgecolor=GREY, label=label)
-    half_tau, half_v = np.diff(basins.tau[:2])[0] / 2, np.diff(basins.v[:2])[0] / 2
-    box = (basins.tau[0] - half_tau, basins.tau[-1] + half_tau, basins.v[0] - half_v, basins.v[-1] + half_v)
-    axes.imshow(image, origin="lower", extent=box, aspect="auto", interpolation="nearest", gid="basins")
-    axes.set(**dict(zip(("xlabel", "ylabel"), (LABELS[name] for name in basins.coordinates), strict=True)))
-    return legend_below(axes, dict(list(entries.items())[:12]))
-
-
-def _new_axes(width: float, height: float) -> Any:
-    from matplotlib.figure import Figure
-
-    return Figure(figsize=(width, height), dpi=150, layout="constrained").add_subplot()
+    axes.imshow(
+        image, origin="lower", extent=_box(basins), aspect="auto", interpolation="nearest", gid="basins", zorder=0
+    )
+    names = [name for name, _ in basins.sides]
+    labels = {**LETTERS, **(LABELS if isinstance(basins, Basins) else {})}
+    axes.set(**dict(zip(("xlabel", "ylabel"), (labels.get(name, name) for name in names), strict=True)))
+    shown = dict(list(entries.items())[:12])
+    return legend_below(axes, shown, 3 if max(map(len, shown)) < 36 else 2)
 
 
 # The plane of states before and after a transition of P: basins, the outline P, the tears of the map and gamma.

@@ -103,7 +103,10 @@ class _Drawn:
         self.events: list[tuple[Event, Array]] = []
         number, rows, kinds = branch.parameter.tolist(), list(heights), classes.tolist()
         for event in sorted(branch.events, key=lambda event: event.index, reverse=True):
-            heights_ = self._matched(self._event_heights(event), rows[min(max(event.index, 0), len(rows) - 1)])
+            own, near = self._event_heights(event), rows[min(max(event.index, 0), len(rows) - 1)]
+            # impacts in the order of the point of the branch: an orbit begins where it likes
+            turned = [np.roll(own, shift) for shift in range(len(own))]
+            heights_ = turned[int(np.argmin([np.nansum(np.abs(heights - near)) for heights in turned]))]
             self.events.append((event, heights_))
             at = min(max(event.index + 1, 0), len(number))
             number.insert(at, event.parameter)
@@ -133,17 +136,12 @@ class _Drawn:
             return _rebounds(np.asarray(orbit.v, dtype=float), orbit.wall)
         return np.asarray(np.mod(np.asarray(orbit.tau, dtype=float) / orbit_period(orbit), 1.0))
 
-    def _matched(self, place: Array, near: Array) -> Array:
-        """The heights of an event's impacts in the order of a point of the branch: an orbit begins where it likes."""
-        turned = [np.roll(place, shift) for shift in range(len(place))]
-        return min(turned, key=lambda each: float(np.nansum(np.abs(each - near))))
-
     def lines(self, axes: Axes) -> None:
         """One line for each impact and each stretch of one class."""
         color = orbit_color(self.branch.n, self.branch.k)
         # the class of a step between points is that of its end that is not an event; of two events that of what follows
         ends = self.classes.tolist()
-        steps = [ends[i] or ends[i + 1] or self._next(i) for i in range(len(ends) - 1)]
+        steps = [next((name for name in ends[i:] if name), "virtual") for i in range(len(ends) - 1)]
         first = 0
         for i in range(1, len(steps) + 1):
             if i < len(steps) and steps[i] == steps[first]:
@@ -155,13 +153,12 @@ class _Drawn:
                 heights = self.heights[piece, impact].copy()
                 numbers = self.number[piece]
                 if self.shown == "phase":
-                    numbers, heights = _torn(numbers, heights)
+                    # cut where a line leaves one side of a period and comes back on the other
+                    jumps = np.flatnonzero(np.abs(np.diff(heights)) > 0.5) + 1
+                    numbers, heights = np.insert(numbers, jumps, np.nan), np.insert(heights, jumps, np.nan)
                 look = {"color": color, "linestyle": style, "linewidth": width, "zorder": 3 + (style == "solid")}
                 axes.plot(numbers, heights, **look, gid=f"branch, {steps[first]}")
             first = i
-
-    def _next(self, i: int) -> str:
-        return next((str(name) for name in self.classes[i:] if name), "virtual")
 
     def marks(self) -> list[tuple[tuple[float, float, str], str | None]]:
         """Places and kinds of events, and the name that is written beside the first impact of each."""
@@ -176,12 +173,6 @@ class _Drawn:
                     name = event.described.label if rank == 0 else None
                     marks_.append(((event.parameter, float(spot[i]), event.kind), name))
         return marks_
-
-
-def _torn(numbers: Array, heights: Array) -> tuple[Array, Array]:
-    """A line of phases, cut where it leaves one side of a period and comes back on the other."""
-    jumps = np.flatnonzero(np.abs(np.diff(heights)) > 0.5) + 1
-    return np.insert(numbers, jumps, np.nan), np.insert(heights, jumps, np.nan)
 
 
 def _rebounds(v: Array, wall: Array | None) -> Array:

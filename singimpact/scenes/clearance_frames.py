@@ -15,7 +15,7 @@ from singimpact.contact.points import is_polynomial
 from singimpact.contact.swans import SwanPoint, swan_points_over_clearance, swans_are_listed
 from singimpact.dynamics.invariant_arcs import grown_gamma
 from singimpact.inputs import refuse, whole
-from singimpact.oscillator.model import Oscillator, require_rebound
+from singimpact.oscillator.model import Oscillator, require_model, require_rebound
 from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.studies import interval
 from singimpact.surface.classification import default_window
@@ -152,8 +152,7 @@ def clearance_film(
     >>> [(round(frame.clearance, 6), len(frame.tangencies)) for frame in film.frames]
     [(0.862922, 2), (1.0, 1), (1.137078, 0)]
     """
-    if not isinstance(model, Oscillator):
-        raise refuse("model", model, "an ImpactOscillator")
+    require_model("model", model)
     require_rebound(model, "the page, which draws gamma,")
     steps = whole("steps", steps, 2, 1001)
     ends = None if between is None else interval(between)

@@ -22,12 +22,14 @@ from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.transitions import BothSides
 from singimpact.dynamics.basins_of_attraction import Basins
 from singimpact.dynamics.bifurcation_diagram import Bifurcation
+from singimpact.dynamics.fit import Fit
 from singimpact.dynamics.invariant_arcs import model_step
 from singimpact.dynamics.orbit import Orbit
+from singimpact.dynamics.regions import Regions
 from singimpact.dynamics.release_map import ReleaseMap
 from singimpact.dynamics.sampling import Section
 from singimpact.inputs import InputError, checked_keywords, refuse, takes_two_walls
-from singimpact.scenes.basins_picture import draw_basins, draw_both_sides
+from singimpact.scenes.basins_picture import draw_basins, draw_both_sides, draw_regions
 from singimpact.scenes.border_picture import draw_border
 from singimpact.scenes.branch_picture import (
     bifurcation_sheet,
@@ -38,6 +40,7 @@ from singimpact.scenes.branch_picture import (
 from singimpact.scenes.label_places import legend_below, legend_entries, legend_mark
 from singimpact.scenes.orbit_picture import (
     SIZE as SHEET,
+    draw_fit,
     draw_orbit,
     draw_periodic,
     draw_release_map,
@@ -84,7 +87,7 @@ def draw_manifolds(manifolds: Sequence[Manifold], axes: Axes) -> Axes:
         raise refuse("manifolds to plot", "those of several models", "manifolds of one model")
     fresh, entries = not axes.has_data(), legend_entries(axes)
     periods, highest = manifolds[0].window.x, max(manifold.window.y[1] for manifold in manifolds)
-    limits = (axes.get_xlim(), axes.get_ylim())
+    limits = (periods, (0.0, highest)) if fresh else (axes.get_xlim(), axes.get_ylim())
     for manifold in manifolds:
         line = PENS[manifold.name].line()
         if not fresh:  # over basins, whose colours are strong
@@ -94,14 +97,20 @@ def draw_manifolds(manifolds: Sequence[Manifold], axes: Axes) -> Axes:
         for turn in _turns(limits[0], periods[1], fresh):
             for piece in manifold.pieces:
                 axes.plot(piece.points[:, 0] + turn, piece.points[:, 1], **line, zorder=4, gid=manifold.name)
-            _saddle(manifold, turn, axes)
+            tau = np.mod(np.asarray(manifold.saddle.tau, dtype=float), manifold.window.x[1]) + turn
+            v = np.asarray(manifold.saddle.v, dtype=float)
+            axes.plot(tau, v, "s", **OPEN, markersize=SETTINGS.saddle, zorder=6, gid="saddle")
             _cuts(manifold, turn, axes, entries)
     entries["saddle"] = legend_mark("s", SETTINGS.saddle)
+    return _dressed(axes, limits, entries, fresh)
+
+
+def _dressed(axes: Axes, limits: tuple[Any, Any], entries: dict[str, Any], fresh: bool, columns: int = 3) -> Axes:
+    """The axes with limits and a legend; those that were empty get the names of launches."""
     if fresh:
-        limits = periods, (0.0, highest)
         axes.set(xlabel=r"launch phase $\tau$", ylabel="launch velocity $v$")
     axes.set(xlim=limits[0], ylim=limits[1])
-    return legend_below(axes, entries)
+    return legend_below(axes, entries, columns)
 
 
 def draw_crossings(crossings: Crossings, axes: Axes) -> Axes:
@@ -125,8 +134,7 @@ def draw_crossings(crossings: Crossings, axes: Axes) -> Axes:
         entries[f"impacts of the first {kind} orbit"] = legend_mark("o", 1.8 * SETTINGS.crossing, **hollow)
     if crossings:
         entries[f"{kind} points, one of each orbit"] = legend_mark("o", SETTINGS.crossing, **filled)
-    axes.set(xlim=limits[0], ylim=limits[1])
-    return legend_below(axes, entries)
+    return _dressed(axes, limits, entries, fresh=False)
 
 
 def draw_certified_crossing(crossing: EnclosedCrossing, axes: Axes) -> Axes:
@@ -171,11 +179,7 @@ def draw_certified_crossing(crossing: EnclosedCrossing, axes: Axes) -> Axes:
     words = f"impacts of a certified {crossing.kind} orbit, angle {float(crossing.angle.value):.4f} at {at}"
     entries[words] = legend_mark("o", SETTINGS.impact, color=pen.color, markerfacecolor=pen.color)
     entries["saddle"] = legend_mark("s", SETTINGS.saddle)
-    if fresh:
-        limits = (0.0, period), (0.0, top)
-        axes.set(xlabel=r"launch phase $\tau$", ylabel="launch velocity $v$")
-    axes.set(xlim=limits[0], ylim=limits[1])
-    return legend_below(axes, entries, 2)
+    return _dressed(axes, ((0.0, period), (0.0, top)) if fresh else limits, entries, fresh, 2)
 
 
 def _turns(limits: tuple[float, float], period: float, fresh: bool) -> list[float]:
@@ -184,12 +188,6 @@ def _turns(limits: tuple[float, float], period: float, fresh: bool) -> list[floa
         return [0.0]
     low, high = np.floor(limits[0] / period), np.ceil(limits[1] / period)
     return [float(turn) * period for turn in np.arange(low, max(high, low + 1))]
-
-
-def _saddle(found: Manifold, turn: float, axes: Axes) -> None:
-    tau = np.mod(np.asarray(found.saddle.tau, dtype=float), found.window.x[1]) + turn
-    v = np.asarray(found.saddle.v, dtype=float)
-    axes.plot(tau, v, "s", **OPEN, markersize=SETTINGS.saddle, zorder=6, gid="saddle")
 
 
 def _cuts(found: Manifold, turn: float, axes: Axes, entries: dict[str, Any]) -> None:
@@ -277,9 +275,9 @@ def plot(
 
     Parameters
     ----------
-    thing : an orbit, a periodic orbit with impacts, a section of an orbit, a map of release phases, a scene, basins, a
-        bifurcation diagram, a branch or an event curve or a list of them, W^s or W^u of a
-        saddle or a list of them, the points where two cross, a certified orbit in which they do, a certified horseshoe,
+    thing : an orbit, a periodic orbit with impacts, a section of an orbit, a map of release phases, a scene, basins,
+        regions over two numbers, a fit, a bifurcation diagram, a branch or an event curve or a list of them, W^s or
+        W^u of a saddle or a list of them, the points where two cross, a certified orbit in which they do, a horseshoe,
         a border orbit, of which the cascade is drawn, both sides of a transition (on two axes), a curve or a list of
         curves of one plane, or an impact surface, of which Z and H are drawn, with the cut at a second wall.
     ax : where to draw; those of a new figure of pyplot when it is not given, so that a notebook shows it and
@@ -354,7 +352,7 @@ def _drawn(thing: Any, axes: Axes, height: str) -> Any:
     raise refuse(
         "thing to plot",
         type(thing).__name__,
-        "an orbit, a scene, basins, a bifurcation, branches, event curves, manifolds, border orbits or curves",
+        "an orbit, a scene, basins, regions, a bifurcation, branches, event curves, manifolds, border orbits or curves",
     )
 
 
@@ -389,11 +387,6 @@ def _new_axes(size: tuple[float, float], *grid: int, **panels: Any) -> Any:
     return _figure(size).subplots(*grid, **panels)
 
 
-def _border(border: BorderOrbit, axes: Any) -> Any:
-    """The cascade on one of the axes, or on two, of which the lower one has the multipliers."""
-    return draw_border(border, *np.ravel(axes))
-
-
 Drawer = Callable[..., Any]
 New = Callable[[], Any]
 WIDE, HIGH, LOW = (partial(_new_axes, size) for size in SIZES)
@@ -409,9 +402,11 @@ PICTURES: tuple[tuple[type, bool, New, Drawer], ...] = (
     (Orbit, True, WIDE, draw_orbit),
     (PeriodicOrbit, True, WIDE, draw_periodic),
     (Section, True, HIGH, draw_section),
+    (Fit, True, WIDE, draw_fit),
     (ReleaseMap, True, HIGH, draw_release_map),
     (Basins, True, HIGH, draw_basins),
-    (BorderOrbit, True, UPRIGHT, _border),
+    (Regions, True, HIGH, draw_regions),
+    (BorderOrbit, True, UPRIGHT, lambda border, axes: draw_border(border, *np.ravel(axes))),
     (Branch, False, LOW, draw_branches),
     (Curve, False, WIDE, _curves),
     (EventCurve, False, LOW, draw_event_curves),

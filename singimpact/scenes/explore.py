@@ -27,8 +27,8 @@ from singimpact.flights.kernels import roots, steps, taylor
 from singimpact.flights.kernels.state import ACROSS
 from singimpact.flights.limits import LIMITS, degree_for
 from singimpact.flights.model_numbers import numbers_of_flow, recurrence_of
-from singimpact.inputs import checked_keywords, refuse, takes_two_walls, whole
-from singimpact.oscillator.model import Oscillator
+from singimpact.inputs import checked_keywords, takes_two_walls, whole
+from singimpact.oscillator.model import Oscillator, require_model
 from singimpact.oscillator.rebound import rho_of
 from singimpact.progress import ProgressLine
 from singimpact.scenes.clearance_frames import SETTINGS, ClearanceFilm, ClearanceFrame, clearance_film
@@ -120,8 +120,7 @@ def explore(osc: Oscillator, between: Any = None, points: int = SETTINGS.steps) 
     >>> print(repr(page).partition(", ")[0])
     ExplorePage(2 clearances from 1 to 1.13708
     """
-    if not isinstance(osc, Oscillator):
-        raise refuse("osc", osc, "an ImpactOscillator")
+    require_model("osc", osc)
     whole("points", points, 2, 1001)
     with ProgressLine() as line:
         film = clearance_film(osc, between, points, line.show)
@@ -190,7 +189,7 @@ def _frame(frame: ClearanceFrame) -> dict[str, Any]:
         CURVES.get(name, (name,))[0]: [
             # chords of the cut are half as long as those of the others
             _steps(
-                curve.points if name in CURVES else _halved(curve.points),
+                curve.points if name in CURVES else np.vstack([curve.points[:-1:2], curve.points[-1:]]),
                 frame.view.tau,
                 heights.get(name, frame.view.v),
             )
@@ -209,11 +208,6 @@ def _frame(frame: ClearanceFrame) -> dict[str, Any]:
         "curves": curves,
         "empty": empty,
     }
-
-
-def _halved(points: Array) -> Array:
-    """Every second point, and the last."""
-    return np.vstack([points[:-1:2], points[-1:]])
 
 
 def _steps(points: Array, tau: tuple[float, float], up: tuple[float, float]) -> list[int]:

@@ -70,7 +70,7 @@ def place_labels(axes: Any, labels: Sequence[tuple[float, float, str]], size: fl
     for x, y, name in labels:
         spot = axes.transData.transform((x, y))
         gaps = [axes.transData.transform(label[:2]) - spot for label in inside if label[2] == name]
-        if _within(spot, box) and not any(np.hypot(*gap) < SETTINGS.together * pixel for gap in gaps):
+        if box.padded(3.0).contains(*spot) and not any(np.hypot(*gap) < SETTINGS.together * pixel for gap in gaps):
             inside.append((x, y, name))
     obstacles = [_curve_points(axes, SETTINGS.sample * pixel)]
     points = np.array([axes.transData.transform((x, y)) for x, y, _ in inside]).reshape(-1, 2)
@@ -135,10 +135,6 @@ def legend_below(axes: Axes, entries: dict[str, Any], columns: int = 3, under: f
         fontsize="small",
     )
     return axes
-
-
-def _within(place: Array, box: Any) -> bool:
-    return bool(box.padded(3.0).contains(*place))
 
 
 def _extent(text: Any) -> Array:

@@ -112,9 +112,8 @@ def _of_surface(name: str) -> Callable[[Results], list[Curve]]:
     return compute
 
 
-def _visible(results: Results) -> list[Curve]:
-    """The horizon, with its first hits flown."""
-    return [replace(curve, first_hits=curve.visible) for curve in _of_surface("horizon")(results)]
+def _with_first_hits(curves: list[Curve]) -> list[Curve]:
+    return [replace(curve, first_hits=curve.visible) for curve in curves]
 
 
 def _manifolds(results: Results, feet: Iterable[Any]) -> list[Curve]:
@@ -143,7 +142,8 @@ NEEDS: dict[str, tuple[Callable[[Results], list[Curve]], tuple[str, ...]]] = {
     "lines": (lambda results: results.surface.lines, ()),
     "zero-set": (_of_surface("zero_set"), ("lines",)),
     "horizon": (_of_surface("horizon"), ("lines",)),
-    "visible": (_visible, ("lines",)),
+    # the horizon, with its first hits flown
+    "visible": (lambda results: _with_first_hits(_of_surface("horizon")(results)), ("lines",)),
     "shadow": (_of_surface("shadow"), ("lines", "visible")),
     "beyond": (lambda results: results.surface.beyond, ()),
     "cut": (lambda results: results.surface.cut, ()),
@@ -184,7 +184,7 @@ def recall(key: str) -> list[Curve] | None:
 
 def keep(key: str, curves: list[Curve]) -> None:
     """Put curves on disk, with what is visible of them; a cache that cannot be written is no reason to fail."""
-    cache.keep(_place(key), cache.packed([replace(curve, first_hits=curve.visible) for curve in curves]))
+    cache.keep(_place(key), cache.packed(_with_first_hits(curves)))
 
 
 def _place(key: str) -> Path:

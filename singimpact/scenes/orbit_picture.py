@@ -14,6 +14,7 @@ import numpy as np
 
 from singimpact.algebra.numbers import Array, as_float
 from singimpact.branches.orbits import PeriodicOrbit
+from singimpact.dynamics.fit import Fit
 from singimpact.dynamics.orbit import Orbit, orbit as flown
 from singimpact.dynamics.release_map import ReleaseMap
 from singimpact.dynamics.sampling import Section
@@ -93,6 +94,16 @@ def draw_section(section: Section, axes: Axes) -> Axes:
     axes.plot(section.x, section.xdot, "o", color=BLUE, markersize=size, markeredgewidth=0, rasterized=True)
     axes.set(xlabel="displacement $x$", ylabel="velocity $\\dot x$")
     return axes
+
+
+def draw_fit(result: Fit, axes: Axes) -> Axes:
+    """Draw what was measured less the orbit that was fitted, in standard deviations of the noise."""
+    axes.axhspan(-2, 2, color=GREY, alpha=0.2, linewidth=0, label="95 % of normal noise")
+    words = {"tau": "times", "v": "velocities", "x": "places"}
+    for (name, size), off, color in zip(result.noise.items(), result.residuals.T, (BLUE, VERMILLION), strict=False):
+        axes.plot(result.t, off / size, ".", color=color, label=words[name])
+    axes.set(xlabel="time $t$", ylabel="residual, in standard deviations")
+    return legend_below(axes, legend_entries(axes))
 
 
 def draw_release_map(releases: ReleaseMap, axes: Axes) -> Axes:

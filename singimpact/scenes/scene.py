@@ -1,7 +1,5 @@
 """A scene: a model, a window, the layers to show and the size of the picture; it computes what these need, no more."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
@@ -14,9 +12,9 @@ import numpy as np
 
 from singimpact.algebra.numbers import as_float, constant
 from singimpact.inputs import InputError, checked_methods, refuse, require_known, shown, unknown, whole
-from singimpact.oscillator.model import FIELDS, Oscillator, read_fields
+from singimpact.oscillator.model import FIELDS, Oscillator, read_fields, require_model
 from singimpact.scenes.layer_data import Results, Shown
-from singimpact.scenes.style import BLACK, GREY, PENS, WHITE
+from singimpact.scenes.style import BLACK, GREY, PENS, WHITE, new_axes
 from singimpact.store import read_bounded
 from singimpact.surface.curve import STATES, SURFACE, Curve, window_ends
 
@@ -41,10 +39,11 @@ class Layer:
     draw: Drawer
 
 
-def _strokes(pen: str) -> Drawer:
+def _strokes(pen: str, beads: bool = False) -> Drawer:
     def draw(axes: Any, curves: list[Curve], label: str) -> None:
+        look = PENS[pen].beads() if beads else PENS[pen].line()
         for n, curve in enumerate(curves):
-            axes.plot(*curve.points.T, **PENS[pen].line(), label=label if n == 0 else None)
+            axes.plot(*curve.points.T, **look, label=label if n == 0 else None)
 
     return draw
 
@@ -66,11 +65,6 @@ def _first_hits(pen: str) -> Drawer:
     return draw
 
 
-def _steps(axes: Any, curves: list[Curve], label: str) -> None:
-    for n, curve in enumerate(curves):
-        axes.plot(*curve.points.T, **PENS["orbit"].beads(), label=label if n == 0 else None)
-
-
 LAYERS: dict[str, Layer] = {
     "horizon": Layer("horizon", SURFACE, PENS["H"].words, _strokes("H")),
     "zero-set": Layer("zero-set", SURFACE, PENS["Z"].words, _strokes("Z")),
@@ -83,7 +77,7 @@ LAYERS: dict[str, Layer] = {
     "gamma": Layer("gamma", STATES, PENS["gamma"].words, _strokes("gamma")),
     "stable-manifolds": Layer("stable-manifolds", STATES, r"$W^s_\tau$", _strokes("loop")),
     "foliation": Layer("foliation", STATES, PENS["manifold"].words, _strokes("manifold")),
-    "orbits": Layer("orbits", STATES, PENS["orbit"].words, _steps),
+    "orbits": Layer("orbits", STATES, PENS["orbit"].words, _strokes("orbit", beads=True)),
 }
 
 
@@ -127,8 +121,7 @@ class Scene:
     model = property(lambda self: self.osc)
 
     def __post_init__(self) -> None:
-        if not isinstance(self.osc, Oscillator):
-            raise refuse("osc", self.osc, "an ImpactOscillator")
+        require_model("osc", self.osc)
         self.osc.seen_from(self.wall)  # refused before the work
         if isinstance(self.layers, str) or not isinstance(self.layers, Iterable):
             raise refuse("layers", self.layers, "a list of names of layers")
@@ -185,7 +178,7 @@ class Scene:
         self._set("marks", tuple(places))
 
     @classmethod
-    def read(cls, path: str | Path) -> Scene:
+    def read(cls, path: str | Path) -> "Scene":
         """A scene from a TOML file: the fields of a scene, with [model] as in a model file, or model = "FILE.toml"."""
         fields = _toml(path)
         require_known(f"key in scene file {shown(str(path))}:", fields, FILE_KEYS)
@@ -230,7 +223,8 @@ class Scene:
 
     def draw(self, axes: Any = None) -> Any:
         """The matplotlib axes with the layers; they say what is not there."""
-        axes = self._axes() if axes is None else axes
+        width = self.pixels / DPI
+        axes = new_axes(width, 0.7 * width, DPI) if axes is None else axes
         missing = []
         for name in self.layers:
             start, layer = perf_counter(), LAYERS[name]
@@ -252,12 +246,6 @@ class Scene:
     def _box(self) -> tuple[tuple[float, float], tuple[float, float]]:
         return self.tau, self.times if self.plane == SURFACE else self.speeds
 
-    def _axes(self) -> Any:
-        from matplotlib.figure import Figure
-
-        size = self.pixels / DPI
-        return Figure(figsize=(size, 0.7 * size), dpi=DPI, layout="constrained").add_subplot()
-
     def _dress(self, axes: Any, missing: list[str]) -> None:
         from matplotlib import patheffects
 
@@ -269,17 +257,13 @@ class Scene:
         for letter, x, y in self.marks:
             axes.plot([x], [y], "o", color=BLACK, markersize=4, zorder=6, clip_on=False)
             axes.annotate(letter, (x, y), (5, 5), textcoords="offset points", path_effects=halo, zorder=7)
-        if refusal := self._absent(missing):
+        if missing or not self.layers:
+            absent = f"in this window there is no {', no '.join(missing)}" if missing else "no layer: nothing to show"
             look = {"ha": "center", "va": "center", "color": GREY, "wrap": True, "path_effects": halo, "zorder": 8}
-            axes.text(0.5, 0.5, refusal, transform=axes.transAxes, **look)
+            axes.text(0.5, 0.5, absent, transform=axes.transAxes, **look)
         if axes.get_legend_handles_labels()[0]:
             # a small picture keeps its axes: the legend lies inside them, however wide its words are
             axes.legend(loc="best", fontsize="small", framealpha=0.9).set_in_layout(False)
-
-    def _absent(self, missing: list[str]) -> str:
-        if not self.layers:
-            return "no layer: nothing to show"
-        return f"in this window there is no {', no '.join(missing)}" if missing else ""
 
     def report(self) -> dict[str, Any]:
         """Flights computed, seconds by layer, what came from the cache, curves of each layer in the window."""

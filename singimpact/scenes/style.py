@@ -172,3 +172,10 @@ def orbit_width(n: int, k: int) -> float:
 
 def _looks(n: int, k: int) -> int:
     return (4 * (n - 1) + k - 1) % len(ORBIT_COLORS)
+
+
+def new_axes(width: float, height: float, dpi: int = 150) -> Any:
+    """Axes of a figure of so many inches that no window shows."""
+    from matplotlib.figure import Figure
+
+    return Figure(figsize=(width, height), dpi=dpi, layout="constrained").add_subplot()

@@ -10,8 +10,6 @@ x - c and x' vanish again at t, Rolle's theorem gives zeros of the third and of 
 as one of the two keeps its sign, there is no such t.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from typing import Any, NamedTuple
@@ -174,7 +172,7 @@ class FlightFromRest(CarriedMotion):
         return zeros_, undecided
 
     def _divided(
-        self, step: Step, near: _NearLaunch, cut: tuple[float, int], left: Callable[[Any], Any]
+        self, step: Step, near: "_NearLaunch", cut: tuple[float, int], left: Callable[[Any], Any]
     ) -> Iterator[tuple[Any, Any, Any]]:
         """The ends of pieces of a step on which x - c and x' may vanish, and what is left of each, or None.
 
@@ -198,7 +196,7 @@ class FlightFromRest(CarriedMotion):
             near.end(higher)
             yield a, b, rest
 
-    def _crossed(self, step: Step, near: _NearLaunch) -> Iterator[tuple[Any, bool]]:
+    def _crossed(self, step: Step, near: "_NearLaunch") -> Iterator[tuple[Any, bool]]:
         """Pieces of a step on which x - c may vanish, and whether it is shown to do so once."""
         value, slope, _ = step
 

@@ -1,7 +1,5 @@
 """`Window` and `Curve`: a part of a plane, and an ordered polyline on an exact curve."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -67,7 +65,7 @@ class Window:
     resolution: float = RESOLUTION.usual
 
     @classmethod
-    def read(cls, x: Any, y: Any, resolution: Any = RESOLUTION.usual, axes: tuple[str, str] = SURFACE) -> Window:
+    def read(cls, x: Any, y: Any, resolution: Any = RESOLUTION.usual, axes: tuple[str, str] = SURFACE) -> "Window":
         """A window from what a user gives; `axes` are the names of the two ranges.
 
         Raises
@@ -146,7 +144,7 @@ class Curve:
         """The vertices with a mark of this name, shape (m, 2)."""
         return self.points[[mark.index for mark in self.marks if mark.name == name]]
 
-    def parts(self, chosen: Array) -> Iterable[Curve]:
+    def parts(self, chosen: Array) -> "Iterable[Curve]":
         """The parts of consecutive chosen vertices."""
         edges = np.flatnonzero(np.diff(np.concatenate(([0], chosen.astype(np.int8), [0]))))
         for start, stop in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):

@@ -9,8 +9,6 @@ P and Pi_0 together are the preimage of one curve of flights, those at rest at t
     triple point at rest three times.  periodic graze: at rest once a period
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
@@ -69,7 +67,7 @@ class Transitions(Results, tuple[Transition, ...]):
 
     called = "found"
     notes: tuple[str, ...] = ()
-    _proof: Callable[[Transitions], tuple[str, ...]] | None = None
+    _proof: "Callable[[Transitions], tuple[str, ...]] | None" = None
 
     def as_dict(self) -> dict[str, Any]:
         """The dictionaries of all transitions, whether a swan may be missing, and why."""

@@ -21,7 +21,15 @@ from singimpact.algebra.analytic import Recorder
 from singimpact.algebra.balls import Balls, as_rational
 from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.expressions import Expression, Name, multiply, names_in, number, substitute
-from singimpact.algebra.isolated_zeros import SETTINGS as BOXES, Box, IsolatedZeros, Place, isolated_zeros, zeros_of
+from singimpact.algebra.isolated_zeros import (
+    SETTINGS as BOXES,
+    Box,
+    IsolatedZeros,
+    Place,
+    isolated_zeros,
+    overlap,
+    zeros_of,
+)
 from singimpact.algebra.precision import balls_at, series_of_any_length
 from singimpact.flights.enclosures.equation import Refused
 from singimpact.flights.enclosures.tube import upper
@@ -153,7 +161,7 @@ class _Search:
                 if max(shares) <= SETTINGS.widest:
                     zeros = self._decided(smaller, times, max(shares))
                     if zeros is not None:
-                        zeros_ += [zero for zero in zeros if not any(_overlap(zero, other) for other in zeros_)]
+                        zeros_ += [zero for zero in zeros if not any(overlap(zero, other) for other in zeros_)]
                         continue
                 if max(shares) < SETTINGS.least:
                     undecided.append((smaller[0], self.times, smaller[1]))
@@ -262,10 +270,6 @@ def _cut(box: Box, k: int) -> list[Box]:
     low, high = box[k]
     at = low + (high - low) * SETTINGS.cut
     return [(*box[:k], ends, *box[k + 1 :]) for ends in ((low, at), (at, high))]
-
-
-def _overlap(one: Place, other: Place) -> bool:
-    return all(a.overlaps(b) for a, b in zip(one, other, strict=True))
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,6 @@ By the degree in (sigma, v) the coefficient of sigma^i v^n is met first beside t
 The level sets of K are the stable fibres.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction

@@ -1,6 +1,6 @@
 """A model at a contact point, in the best numbers there are: rationals, exact constants of sympy, or balls."""
 
-from __future__ import annotations
+from __future__ import annotations  # flint and sympy are loaded when they are used
 
 from dataclasses import dataclass
 from fractions import Fraction

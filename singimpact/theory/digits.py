@@ -1,6 +1,6 @@
 """Certified digits: a computation in balls is done again with more bits until each result has its digits."""
 
-from __future__ import annotations
+from __future__ import annotations  # flint and sympy are loaded when they are used
 
 from collections.abc import Callable, Iterable, Mapping
 from fractions import Fraction
@@ -55,11 +55,6 @@ def as_digits(ball: flint.arb, digits: int) -> Any:
     with digits_at(digits + 3) as mp:
         value = Fraction(0) if ball.contains(0) else as_rational(ball)
         return for_user(mp.mpf(value.numerator) / value.denominator)
-
-
-def as_double(ball: flint.arb) -> float:
-    """A ball as a double; zero when it holds zero."""
-    return 0.0 if ball.contains(0) else float(ball.mid())
 
 
 def sympy_digits(ball: flint.arb, digits: int) -> Any:

@@ -5,7 +5,7 @@ the same polynomial shifted to 1: so nothing is lost as r -> 0 or as r -> 1.  Is
 As functions of r (`of_m`, `series`, `minimal_polynomial`) they are in `multipliers`, and reached from here too.
 """
 
-from __future__ import annotations
+from __future__ import annotations  # flint and sympy are loaded when they are used
 
 from dataclasses import dataclass
 from fractions import Fraction

@@ -23,7 +23,7 @@ from singimpact.oscillator.rho_series import TASK
 from singimpact.theory.completion import by_velocity, symbolic_completion
 from singimpact.theory.constants import LetteredModel
 from singimpact.theory.contact_points import Place, ending_gamma, exact_contact, multiplier, place
-from singimpact.theory.digits import all_certified, all_digits, as_double, sympy_digits, with_digits
+from singimpact.theory.digits import all_certified, all_digits, sympy_digits, with_digits
 from singimpact.theory.gamma_in_symbols import rho_names, symbolic_curve
 from singimpact.theory.gamma_series import InvariantCurve, invariant_curve
 from singimpact.theory.impact_sheet import generic_sheet, sheet
@@ -348,7 +348,11 @@ def arc_in_numbers(order: int, j: int, model: Any, tau: Any = None) -> tuple[Pow
             PowerSeries(
                 "sigma",
                 order,
-                {n: as_double(ball) for n, ball in getattr(curve, name).items() if n <= order},
+                {
+                    n: 0.0 if ball.contains(0) else float(ball.mid())
+                    for n, ball in getattr(curve, name).items()
+                    if n <= order
+                },
                 DOUBLE,
                 {n: abs(float(value)) for n, value in getattr(rough, name).items() if n > order},
             )

@@ -145,7 +145,8 @@ class _Solver:
         self.tau.append(self.zero)
         self.bracket.append(self._bracket(level))
         self._extend(level)
-        self._correct(level, (self._landing(level) - self._rebound(level)) * (1 / self._divisor(level)))
+        landing = dot(self.launch, [self.motion_powers[self.j + 1 + n][level - n] for n in range(level + 1)])
+        self._correct(level, (landing - self._rebound(level)) * (1 / self._divisor(level)))
 
     def _bracket(self, level: int) -> Any:
         """a(sigma + z T) - (f - f(c, 0)) at one level, a polynomial in z."""
@@ -200,10 +201,6 @@ class _Solver:
         self.slope.append(self.polys.derivative(self.y[level]))
         self.launch.append(launch)
         self.impact.append(self.polys.at_one(self.slope[level]))
-
-    def _landing(self, level: int) -> Any:
-        """One level of W(sigma + T)."""
-        return dot(self.launch, [self.motion_powers[self.j + 1 + n][level - n] for n in range(level + 1)])
 
     def _rebound(self, level: int) -> Any:
         """One level of rho(U)."""

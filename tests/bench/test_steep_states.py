@@ -3,18 +3,24 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from math import pi
 
+import mpmath
 import numpy as np
 import pytest
 
-from singimpact.algebra import DOUBLES, evaluate
+from singimpact.algebra import DOUBLES, Certified, evaluate
 from singimpact.bench import (
+    AGREE,
+    APART,
     COLUMNS,
     FAMILIES,
     HIT,
     MISS,
+    MORE,
     NAMES,
+    OPEN,
     PARAMETRIC,
     PHASE,
     POSITION,
@@ -25,10 +31,11 @@ from singimpact.bench import (
     Flown,
     Motion,
     enclosed,
+    steep_balls,
     steep_states,
     summary,
 )
-from singimpact.bench.truth import enclosed_flight, graded_steps
+from singimpact.bench.truth import graded_steps
 from singimpact.impact_oscillator import ImpactOscillator
 from singimpact.status import Status
 
@@ -70,7 +77,7 @@ def test_twenty_families_are_drawn_alike_everywhere() -> None:
 
 
 def test_no_first_hit_of_the_parametric_families_is_wrong() -> None:
-    columns = steep_states.check(200, 1, parametric=True)
+    columns = steep_states.check(200, 1, parametric=True).columns
     assert {FAMILIES[int(index)] for index in columns["family"]} == set(PARAMETRIC)
     assert np.isin(columns["true_status"], (graded_steps.HIT, graded_steps.MISS)).mean() > 0.95
     assert not steep_states.wrong(columns).any()
@@ -97,10 +104,9 @@ def test_both_truths_give_known_flight_times(force, forcing, plain, layer, launc
     hit = graded_steps.first_hit(motion, *launch, 30.0)
     assert hit.flight_time == pytest.approx(time, abs=6e-7)
     assert hit.crossed
-    ball = enclosed_flight.first_hit(ImpactOscillator(force, forcing, 0, "1/2"), *launch, 30.0)
-    assert ball.flight_time.rad() < 1e-24
-    assert hit.flight_time == pytest.approx(float(ball.flight_time), rel=1e-13)
-    assert hit.velocity == pytest.approx(float(ball.velocity), rel=1e-12)
+    ball = ImpactOscillator(force, forcing, 0, "1/2").first_hit(*launch, digits=20, horizon=30).certified
+    assert hit.flight_time == pytest.approx(float(ball.flight_time.value), rel=1e-13)
+    assert hit.velocity == pytest.approx(float(ball.velocity.value), rel=1e-12)
 
 
 @pytest.mark.slow
@@ -123,16 +129,15 @@ def test_a_dip_inside_a_step_is_found() -> None:
 @pytest.mark.parametrize(
     "number", [each if each % 4 == 0 else pytest.param(each, marks=pytest.mark.slow) for each in range(22)]
 )
-def test_truth_agrees_with_balls(number: int) -> None:
+def test_truth_agrees_with_enclosures(number: int) -> None:
     case = steep_states.drawn(2, number, 2)
     tau, v = float(case.tau[0]), float(case.v[0])
     hit = graded_steps.first_hit(case.motion(), tau, v, 30.0)
-    ball = enclosed_flight.first_hit(case.oscillator(), tau, v, 30.0)
-    if ball.flight_time is None:
-        assert hit.status == MISS
-    else:
-        assert hit.status == HIT
-        assert hit.flight_time == pytest.approx(float(ball.flight_time), rel=1e-12)
+    numbers, _ = steep_balls.by_digits(case.oscillator(), (tau, v), 20)
+    assert numbers is not None
+    assert hit.status == (HIT if numbers else MISS)
+    if numbers:
+        assert hit.flight_time == pytest.approx(float(numbers[0].value), rel=1e-12)
 
 
 def columns(**changes: float) -> dict[str, np.ndarray]:
@@ -163,13 +168,17 @@ def test_judge(changes: dict[str, float], is_wrong: bool) -> None:
     assert steep_states.wrong(columns(**changes)).tolist() == [is_wrong]
 
 
-def test_errors_are_measured_against_balls() -> None:
+def beside(number: int, checked: bool = False, twice: bool = False, off: float = 0.0) -> dict[str, np.ndarray]:
+    """The enclosure of a state whose doubles and fixed steps are those of the enclosure, but for a part of the time."""
+    case = steep_states.drawn(0, number)
+    (time, velocity), _ = steep_balls.by_digits(case.oscillator(), (float(case.tau[0]), float(case.v[0])), 20)
+    state = Flown(number, 0, float(time.value) * (1 + off), float(velocity.value), float(time.value), checked, twice)
+    return {name: np.array([value]) for name, value in zip(COLUMNS, enclosed(0, state), strict=True)}
+
+
+def test_errors_are_measured_against_enclosures() -> None:
     """A planted flight time that is off by 1e-6 has that error, and an estimate below it is counted."""
-    case = steep_states.drawn(0, 0)
-    ball = enclosed_flight.first_hit(case.oscillator(), float(case.tau[0]), float(case.v[0]), 30.0)
-    time, u = float(ball.flight_time), float(ball.velocity)
-    row = enclosed(0, Flown(0, 0, time * (1 + 1e-6), u, time, u, False))
-    balls = {name: np.array([value]) for name, value in zip(COLUMNS, row, strict=True)}
+    balls = beside(0, off=1e-6)
     assert balls["time_error"] == pytest.approx(1e-6, rel=1e-6)
     assert balls["velocity_error"] < 1e-15
     found = columns() | {name: np.array([1e-9]) for name in ("error", "velocity_error", "velocity_condition")}
@@ -178,16 +187,68 @@ def test_errors_are_measured_against_balls() -> None:
     assert summed.time is not None
     assert summed.velocity is not None
     assert (summed.time.below, summed.velocity.below) == (1, 0)
+    assert summed.wrong
+    honest = summary(found, beside(0))
+    assert not honest.wrong
+    late = summary(found, beside(0) | {"step_time_error": np.array([1e-6])})
+    assert (late.disagree, late.wrong) == (1, True)
+
+
+PULSE = 3  # a case that the second program decides in a tenth of a second
+
+
+def test_enclosures_agree_with_the_second_program_and_with_more_digits() -> None:
+    balls = beside(PULSE, checked=True, twice=True)
+    assert (balls["checked"], balls["twice"]) == (AGREE, AGREE)
+
+
+@pytest.mark.parametrize("name", ["flight_time", "velocity"])
+@pytest.mark.parametrize(("digits", "checked", "twice"), [(20, APART, APART), (MORE, AGREE, APART)])
+def test_an_enclosure_that_is_off_is_seen(name, digits, checked, twice, monkeypatch) -> None:
+    """A number of an enclosure moved by a millionth of itself."""
+    honest = ImpactOscillator.first_hit
+
+    def moved(osc, *at, **named):
+        hit = honest(osc, *at, **named)
+        true = getattr(hit.certified, name)
+        if named["digits"] == digits:
+            wrong = Certified(true.value * (1 + mpmath.mpf(10) ** -6), true.radius, true.digits)
+            hit.__dict__["certified"] = replace(hit.certified, **{name: wrong})
+        return hit
+
+    monkeypatch.setattr(ImpactOscillator, "first_hit", moved)
+    balls = beside(PULSE, checked=True, twice=True)
+    assert (balls["checked"], balls["twice"]) == (checked, twice)
+    found = columns() | {name: np.array([1e-3]) for name in ("error", "velocity_error", "velocity_condition")}
+    assert summary(found, balls).wrong
+
+
+def test_states_that_are_not_decided_are_counted(monkeypatch) -> None:
+    monkeypatch.setattr(steep_balls, "SECONDS", 0.0)
+    assert beside(PULSE, checked=True)["checked"] == OPEN
+
+
+@pytest.mark.slow
+def test_most_steep_states_are_enclosed_twice() -> None:
+    states = steep_states.check(25 * 8, 1).columns
+    first = {name: column[::25] for name, column in states.items()}  # a state of each family
+    found = steep_balls.check(first, (8, 2, 6), 1)
+    assert (found.states, found.refused) == (8, 0)
+    assert sum(found.checked) == 2
+    assert found.twice == (6, 0, 0)
+    assert not found.wrong
 
 
 @pytest.mark.slow
 def test_command(singimpact) -> None:
     told = singimpact(
         "bench", "states", "--family", "steep", "--states", "25", "--workers", "1", "--quick", "--balls", "2",
-        "--digits-checks", "0", "--digit-pairs", "2", "--json",
+        "--digits-checks", "1", "--digit-pairs", "2", "--json",
     )  # fmt: skip
     data = json.loads(told.stdout)["states"]
-    assert sum(row["states"] for row in data["families"]) == 25
-    assert {row["family"] for row in data["families"]} == {"friction"}
+    assert sum(row["states"] for row in data["rows"]) == 25
+    assert {row["kind"] for row in data["rows"]} == {"friction"}
     assert data["balls"]["agree"] == 2
-    assert told.exit_code == int(any(row["wrong"] for row in data["families"]))
+    assert sum(data["balls"]["checked"]) == 1
+    assert sum(data["balls"]["twice"]) == 2
+    assert told.exit_code == int(any(row["wrong"] for row in data["rows"]))

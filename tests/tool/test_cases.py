@@ -16,8 +16,7 @@ import numpy as np
 import pytest
 
 from singimpact import cases
-from singimpact.case_files import InMemory, NpzFile
-from singimpact.case_journal import HEAD, Journal, Record
+from singimpact.case_files import HEAD, InMemory, Journal, NpzFile, Record
 from singimpact.case_keys import cases_key, function_key
 from singimpact.case_pools import Place, computed
 from singimpact.cases import POOL, _Source, _Work, sweep

@@ -18,7 +18,7 @@ TAKEN = {
     "acceleration", "basins", "bifurcation", "branch", "chatter_limit", "derivative", "event_curve", "first_hit",
     "impact_map", "inverse_map", "iterate", "launch", "lyapunov", "orbit", "periodic", "release", "selftest", "to_toml",
     "ImpactSurface", "Scene", "grown_gamma", "tangency_points", "threshold", "classify", "transitions", "explore",
-    "ensemble", "over",
+    "ensemble", "over", "regions",
 }  # fmt: skip
 """What takes two walls."""
 

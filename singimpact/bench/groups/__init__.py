@@ -9,6 +9,7 @@ GROUPS: dict[str, Callable[[Effort], Iterator[Case]]] = {
     "public": public_rows.cases,
     "chatter": chatter_rows.cases,
     "series": series_rows.cases,
+    "regions": many_rows.regions,
     "ensemble": many_rows.ensemble,
     "limit": limit_rows.cases,
 }

@@ -18,7 +18,7 @@ import singimpact as si
 from singimpact.algebra.numbers import Array
 from singimpact.bench.drawn import CHATTERING, CLEARANCES, OMEGAS, Draws, States
 from singimpact.bench.fresh import cost
-from singimpact.bench.groups.many_rows import BALL, family_of, one_by_one
+from singimpact.bench.groups.many_rows import BALL, PLACES, family_of, one_by_one, square
 from singimpact.bench.measuring import Aim, Case, Effort, Method, Row, Timed
 from singimpact.branches.events import PERIOD_DOUBLING
 
@@ -258,6 +258,10 @@ def searches(effort: Effort) -> list[Method]:
         _plain("branch", "linear, a point", 500.0, 200, partial(linear_branch, 200)),
         _plain("event_curve", "bouncing ball, a point", None, 200, doubling_curve),
         _plain("ensemble", "bouncing ball, an impact", 1.0, 50_000, partial(si.ensemble, BALL, *TABLE, impacts=50)),
+        *(
+            _plain("regions", f"{name}, a place", PLACES[name], side**2, partial(square, name, side))
+            for name, side in (("linear", 40), ("duffing", 24))
+        ),
         _plain("basins", "linear, a pixel", 4.2, pixels**2, lambda: si.basins(two, size=pixels)),
         _plain("manifold", "linear", None, 1, lambda: si.manifold(saddle, v=1)),
         _plain("homoclinic_points", "linear", None, 1, lambda: si.homoclinic_points(chaotic.periodic(1, 1)[0])),

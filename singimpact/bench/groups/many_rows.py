@@ -1,6 +1,7 @@
-"""`bench ensemble`: many orbits through chatter and rest, beside one after the other; and calls of many models.
+"""`bench regions` and `bench ensemble`: many models and many orbits, beside a user's loops over scipy and numba.
 
-Only time is measured, at two sizes, so that it shows how time grows: the orbits of an ensemble are chaotic.
+Only time is measured, at two sizes or more, so that it shows how time grows: a picture of classes has no known truth,
+and the orbits of an ensemble are chaotic.
 """
 
 from collections.abc import Callable, Iterator
@@ -9,9 +10,62 @@ from functools import partial
 import numpy as np
 
 import singimpact as si
-from singimpact.bench.measuring import NO_AIM, Aim, Case, Effort, Method
+from singimpact.bench.drawn import Problem
+from singimpact.bench.groups.impact_map_rows import ACCURACY, SCIPY
+from singimpact.bench.measuring import NO_AIM, Aim, Case, Effort, Method, with_peers
+from singimpact.bench.peers import fixed_steps, followed_impacts, runge_kutta
 
+MODELS = {
+    "linear": si.linear("2.8", 0, "0.8"),
+    "duffing": si.ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "cos(omega*t)", 0, "0.8", {"omega": "1.7"}),
+}
 BALL = si.ImpactOscillator("1", "1.9*sin(t)", 0, "1/2")
+WINDOWS = {"linear": ((1.5, 5), (-0.3, 0.5)), "duffing": ((0.8, 3), (0.0, 0.5))}
+# microseconds of a place: 30 s and 120 s of CPU for 400 x 400
+PLACES = {"linear": 187.5, "duffing": 750.0}
+SETTLING = 300  # impacts of each place in a user's own loop
+
+
+def square(family: str, size: int) -> object:
+    """Periods over frequency and clearance, of so many values each."""
+    return si.regions(MODELS[family], ("omega", "clearance"), WINDOWS[family], size=size)
+
+
+def regions(effort: Effort) -> Iterator[Case]:
+    """Regions over frequency and clearance, a place."""
+    for family in MODELS:
+        sizes = (20, 40) if effort.quick else (100, 200, 400) if family == "linear" else (50, 100)
+        own = [
+            timed("singimpact, regions", f"{n} x {n}", n**2, partial(square, family, n), Aim(PLACES[family]))
+            for n in sizes
+        ]
+        omegas, clearances = WINDOWS[family]
+        places = [Problem(family, omega, c, 0.8, 0.0, 0.1) for omega in omegas for c in clearances]
+        setting = f"{SETTLING} impacts a place"
+        methods, skipped = with_peers(
+            own,
+            partial(_numba, setting, places),
+            partial(_scipy, setting, places[:1]),
+        )
+        yield Case(f"{family}, periods over omega and c, a place", methods, skipped=skipped)
+
+
+def _numba(setting: str, places: list[Problem]) -> list[Method]:
+    """A student's loop, of so many impacts a place."""
+
+    def call() -> None:
+        for each in places:
+            numbers = fixed_steps.numbers(each.family, each.omega, each.clearance)
+            fixed_steps.orbit(each.tau, each.v, SETTLING, each.restitution, numbers)
+
+    return [timed("numba", setting, len(places), call)]
+
+
+def _scipy(setting: str, places: list[Problem]) -> list[Method]:
+    """A loop over events of scipy."""
+    fly = runge_kutta.stepper(places[0].family, ACCURACY[SCIPY])
+    calls = [partial(followed_impacts.chain, fly, each, SETTLING) for each in places]
+    return [timed(SCIPY, setting, len(places), lambda: [call() for call in calls])]
 
 
 def ensemble(effort: Effort) -> Iterator[Case]:

@@ -58,9 +58,27 @@ def chain(fly: Fly, problem: Problem, count: int) -> list[float]:
 LEAST = 1e-6  # velocity below which peers go through the wall
 
 
-def derivative_of_map(problem: Problem, time: float, there: list[float]) -> list[float]:
-    """The entries of D G from the time of a hit and (x', y, y', z, z') there: y varies with v, z with tau."""
-    u, y, y_dot, z, z_dot = there
-    e, r = cos(problem.omega * time) - problem.clearance, problem.restitution
-    time_by_tau, time_by_v = -z / u, -y / u
-    return [1 + time_by_tau, time_by_v, -r * (z_dot + e * time_by_tau), -r * (y_dot + e * time_by_v)]
+# From a problem and a state to the time and the state of the first event; nan when none is found.
+FirstEvent = Callable[[Problem, list[float]], tuple[float, list[float]]]
+
+
+def flight(first_event: FirstEvent) -> Fly:
+    """A function from a problem to its first event: time since the launch, velocity."""
+
+    def fly(problem: Problem) -> tuple[float, float]:
+        time, state = first_event(problem, [problem.clearance, problem.v])
+        return time - problem.tau, state[1]
+
+    return fly
+
+
+def derivative_of_map(first_event: FirstEvent) -> Callable[[Problem], list[float]]:
+    """A function from a problem to the entries of D G, by (x, x', y, y', z, z'): y varies with v, z with tau."""
+
+    def entries(problem: Problem) -> list[float]:
+        time, (_, u, y, y_dot, z, z_dot) = first_event(problem, [problem.clearance, problem.v, 0.0, 1.0, 0.0, 0.0])
+        e, r = cos(problem.omega * time) - problem.clearance, problem.restitution
+        time_by_tau, time_by_v = -z / u, -y / u
+        return [1 + time_by_tau, time_by_v, -r * (z_dot + e * time_by_tau), -r * (y_dot + e * time_by_v)]
+
+    return entries

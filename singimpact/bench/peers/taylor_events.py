@@ -7,7 +7,7 @@ from typing import Any
 
 from singimpact.bench.drawn import Problem
 from singimpact.bench.measuring import NotInstalled
-from singimpact.bench.peers.followed_impacts import Fly, derivative_of_map
+from singimpact.bench.peers.followed_impacts import FirstEvent, Fly, derivative_of_map, flight
 
 LONGEST = 1000.0  # time after which a flight is given up
 
@@ -22,13 +22,7 @@ def stepper(family: str, tolerance: float = 2.0**-52) -> Fly:
     heyoka = _heyoka()
     x, u = heyoka.make_vars("x", "u")
     force = x if family == "linear" else x + 0.1 * u + 0.3 * x**3
-    first_event = _compiled([(x, u), (u, heyoka.cos(heyoka.par[0] * heyoka.time) - force)], tolerance)
-
-    def fly(problem: Problem) -> tuple[float, float]:
-        time, state = first_event(problem, [problem.clearance, problem.v])
-        return time - problem.tau, state[1]
-
-    return fly
+    return flight(_compiled([(x, u), (u, heyoka.cos(heyoka.par[0] * heyoka.time) - force)], tolerance))
 
 
 def varied(tolerance: float = 2.0**-52) -> Callable[[Problem], list[float]]:
@@ -49,13 +43,7 @@ def varied(tolerance: float = 2.0**-52) -> Callable[[Problem], list[float]]:
         (z, z_dot),
         (z_dot, -omega * heyoka.sin(omega * time) - z),
     ]
-    first_event = _compiled(field, tolerance)
-
-    def fly(problem: Problem) -> list[float]:
-        time, state = first_event(problem, [problem.clearance, problem.v, 0.0, 1.0, 0.0, 0.0])
-        return derivative_of_map(problem, time, state[1:])
-
-    return fly
+    return derivative_of_map(_compiled(field, tolerance))
 
 
 def _heyoka() -> ModuleType:
@@ -66,7 +54,7 @@ def _heyoka() -> ModuleType:
     return heyoka
 
 
-def _compiled(field: list[tuple[Any, Any]], tolerance: float) -> Callable[[Problem, list[float]], Any]:
+def _compiled(field: list[tuple[Any, Any]], tolerance: float) -> FirstEvent:
     """A function from a problem and a state to the time and the state at which x falls through c; nan without one.
 
     Parameters

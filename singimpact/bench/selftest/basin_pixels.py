@@ -12,8 +12,8 @@ from math import copysign, inf, isfinite
 
 import numpy as np
 
-from singimpact.bench.selftest.draws import Flown
-from singimpact.bench.selftest.rows import Row, Tally
+from singimpact.bench.selftest.draws import Flown, NotComparable, compared
+from singimpact.bench.selftest.rows import Tally
 from singimpact.bench.truth.graded_steps import HIT, MISS, UNDECIDED
 from singimpact.bench.truth.plain_orbits import PlainOrbits
 from singimpact.dynamics import basins_of_attraction
@@ -21,7 +21,6 @@ from singimpact.dynamics.behaviours import LongRun
 from singimpact.flights.horizons import horizon_of
 from singimpact.inputs import InputError
 
-NAME = "pixels of basins"
 UNSETTLED = ("chaotic", "not decided")
 
 
@@ -29,9 +28,18 @@ UNSETTLED = ("chaotic", "not decided")
 
 
 @dataclass(frozen=True)
-class FollowedSettings:
-    """When the fate of an orbit is decided."""
+class PixelSettings:
+    """The number of pixels, and when the fate of an orbit is decided."""
 
+    size: int = 8  # pixels a side
+    followed: int = 16  # of them
+    impacts: int = 3000  # of an orbit, in `basins` and here; the default of `basins` takes a minute here
+    # relative changes of a state, far above the tolerance 1e-10 of the flights of `basins`: where one moves the orbit
+    # into another class, rounding explains the difference
+    moved: tuple[float, ...] = (-1e-8, -3e-9, 3e-9, 1e-8)
+    transient: int = 200  # an orbit that settles sooner is no long transient, whatever its neighbours do
+    same: float = 1e-3  # relative distance of states of one attractor
+    longer: int = 20_000  # impacts of an orbit that has settled in `basins` and not here
     periods: int = 64  # most impacts of a periodic orbit, as many as `basins` tells apart in a long run
     close: float = 1e-7  # relative distance of equal states
     every: int = 20  # impacts between two looks
@@ -47,7 +55,7 @@ class FollowedSettings:
     parted: float = 1e-2
 
 
-FOLLOWED = FollowedSettings()
+PIXELS = PixelSettings()
 # tau within a period, v, which is < 0 or -0.0 at an upper wall, and the periods before.
 State = tuple[float, float, float]
 
@@ -96,7 +104,7 @@ class Follower:
         if not v and self.plain.at(v).push(tau) < 0:
             return Fate("chatter", tau=tau, v=v)
         begun, wait = tau, 0
-        states = deque([(tau, v, 0.0)], FOLLOWED.periods + 1)
+        states = deque([(tau, v, 0.0)], PIXELS.periods + 1)
         for count in range(1, self.impacts + 1):
             status = self._fly(states)
             if status != HIT:
@@ -104,12 +112,12 @@ class Follower:
             tau, v, turns = states[-1]
             wait -= 1
             if wait <= 0 and self._slow(tau, v):
-                end = self.plain.chatter(tau, v, FOLLOWED.most)
+                end = self.plain.chatter(tau, v, PIXELS.most)
                 if end.status == "complete":
                     elapsed = turns * self.plain.period + tau + end.time - begun
                     return Fate("chatter", 0, 0, tau + end.time, copysign(0.0, end.v), count, elapsed)
                 wait = end.impacts
-            if count % FOLLOWED.every == 0 and (closed := self._closed(states)):
+            if count % PIXELS.every == 0 and (closed := self._closed(states)):
                 return Fate("orbit", *self._fewest(tau, v, closed), tau, v, count)
         return Fate("unsettled", 0, 0, tau, v, self.impacts)
 
@@ -125,10 +133,10 @@ class Follower:
 
     def _slow(self, tau: float, v: float) -> bool:
         here = self.plain.at(v)
-        if abs(v) > FOLLOWED.slow * self.fast or not here.slope < 1:
+        if abs(v) > PIXELS.slow * self.fast or not here.slope < 1:
             return False
         a = here.push(tau)
-        return a < 0 and 2 * abs(v) / (-a * (1 - here.slope)) < FOLLOWED.short * self.plain.period
+        return a < 0 and 2 * abs(v) / (-a * (1 - here.slope)) < PIXELS.short * self.plain.period
 
     def _closed(self, states: deque[State]) -> tuple[int, int] | None:
         """(n, k) of the last states, where the last one is near the one n impacts before it."""
@@ -137,7 +145,7 @@ class Follower:
             earlier, speed, before = states[-1 - n]
             passed = turns - before + (tau - earlier) / self.plain.period
             k = round(passed)
-            if k > 0 and abs(passed - k) < FOLLOWED.close and abs(v - speed) < FOLLOWED.close * self.fast:
+            if k > 0 and abs(passed - k) < PIXELS.close and abs(v - speed) < PIXELS.close * self.fast:
                 return n, k
         return None
 
@@ -147,7 +155,7 @@ class Follower:
         if n == 1:
             return closed
         states = deque([(tau, v, 0.0)], n + 1)
-        if any(self._fly(states) != HIT for _ in range(FOLLOWED.again * n)):
+        if any(self._fly(states) != HIT for _ in range(PIXELS.again * n)):
             return closed
         later = self._closed(states)
         return later if later and later[0] < n and later[0] * k == n * later[1] else closed
@@ -179,7 +187,7 @@ class Follower:
             if None in ends:
                 return ends[0] is not ends[1]
             (t, v), (s, u) = ((start[0] + end[0], end[1]) for start, end in zip((one, other), ends, strict=True) if end)
-            if abs(t - s) > FOLLOWED.parted * self.plain.period or abs(v - u) > FOLLOWED.parted * self.fast:
+            if abs(t - s) > PIXELS.parted * self.plain.period or abs(v - u) > PIXELS.parted * self.fast:
                 return True
             turns = t // self.plain.period * self.plain.period
             one, other = (t - turns, v), (s - turns, u)
@@ -206,36 +214,18 @@ def _after_lift_off(follower: Follower, index: int, side: float) -> tuple[Fate, 
     return fate, hit.time + fate.elapsed + rest % follower.plain.period
 
 
-@dataclass(frozen=True)
-class PixelSettings:
-    """The number of pixels, and the limit at which one is decided."""
-
-    size: int = 8  # pixels a side
-    followed: int = 16  # of them
-    impacts: int = 3000  # of an orbit, in `basins` and here; the default of `basins` takes a minute here
-    # relative changes of a state, far above the tolerance 1e-10 of the flights of `basins`: where one moves the orbit
-    # into another class, rounding explains the difference
-    moved: tuple[float, ...] = (-1e-8, -3e-9, 3e-9, 1e-8)
-    transient: int = 200  # an orbit that settles sooner is no long transient, whatever its neighbours do
-    same: float = 1e-3  # relative distance of states of one attractor
-    longer: int = 20_000  # impacts of an orbit that has settled in `basins` and not here
-
-
-PIXELS = PixelSettings()
-
-
-def row(flown: Flown) -> Row:
-    """The row of the table."""
+@compared("pixels of basins")
+def row(flown: Flown, tally: Tally) -> None:
+    """Some of the pixels of a picture."""
     osc, fast = flown.osc, flown.scales.fast
     if flown.scales.period is None:
-        return Row(NAME, note="does not apply: g has no period")
-    tally = Tally(NAME)
+        raise NotComparable("g has no period")
     try:
         follower = Follower(flown.plain, fast, PIXELS.impacts, horizon_of(osc, None))
         with ThreadPoolExecutor(1) as pool:
             answer = basins_of_attraction.basins(osc, None, (0, fast), PIXELS.size, pool, None, PIXELS.impacts)
     except (InputError, TypeError) as reason:
-        return Row(NAME, note=f"does not apply: {reason}")
+        raise NotComparable(reason) from reason
     tally.restart()
     tau, v = (axis.ravel() for axis in np.meshgrid(answer.tau, answer.v))
     places = np.unique(np.linspace(0, tau.size - 1, PIXELS.followed).astype(int))
@@ -243,7 +233,6 @@ def row(flown: Flown) -> Row:
     for at in tally.in_time(places.tolist()):
         state = float(tau[at]), float(v[at])
         _pixel(follower, state, answer.attractors[answer.codes.ravel()[at]], bool(first[at]), tally)
-    return tally.row()
 
 
 def _pixel(follower: Follower, state: tuple[float, float], answer: LongRun, first: bool, tally: Tally) -> None:
@@ -262,7 +251,7 @@ def _pixel(follower: Follower, state: tuple[float, float], answer: LongRun, firs
         _sensitive(follower, state, fate, call, tally)
     elif answer.kind in UNSETTLED and not first and (open_ := _unsettled_beside(follower, state, fate)):
         # "chaotic" says that neighbours separate too
-        if answer.kind == "not decided" or follower.separates((open_.tau, open_.v), FOLLOWED.chaos, PIXELS.impacts):
+        if answer.kind == "not decided" or follower.separates((open_.tau, open_.v), PIXELS.chaos, PIXELS.impacts):
             tally.judge(0.0, call)
         else:
             tally.leave("no period, and neighbours separate slowly if at all")
@@ -306,7 +295,7 @@ def _explained(follower: Follower, state: tuple[float, float], answer: LongRun, 
         few, many = sorted(((last.n, last.k), (int(answer.n), answer.k)))
         # an orbit that is another one several times over has equal states
         apart = np.abs(np.subtract.outer(answer.v, answer.v))[np.triu_indices(int(answer.n), 1)]
-        doubled = answer.n < last.n or bool((apart > FOLLOWED.close * follower.fast).all())
+        doubled = answer.n < last.n or bool((apart > PIXELS.close * follower.fast).all())
         if many[0] * few[1] == few[0] * many[1] and doubled:
             return "settles slowly beside a period doubling"
     if last.kind == "unsettled":
@@ -328,9 +317,9 @@ def _unsettled_beside(follower: Follower, state: tuple[float, float], fate: Fate
 def _sensitive(follower: Follower, state: tuple[float, float], fate: Fate, call: str, tally: Tally) -> None:
     """Neighbours 1e-15 away part before the orbit settles; where some 1e-12 away do not, this is wrong."""
     count = max(fate.impacts, 1)
-    if follower.separates(state, FOLLOWED.rounding, count):
+    if follower.separates(state, PIXELS.rounding, count):
         tally.judge(0.0, call)
-    elif follower.separates(state, 1e3 * FOLLOWED.rounding, count):
+    elif follower.separates(state, 1e3 * PIXELS.rounding, count):
         tally.leave("neighbours part at a distance above rounding")
     else:
         tally.judge(np.inf, call)

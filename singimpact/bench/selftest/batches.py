@@ -11,13 +11,11 @@ import numpy as np
 
 from singimpact.algebra.numbers import EPSILON, Array
 from singimpact.bench.drawn import compile_entries
-from singimpact.bench.selftest.draws import LEAST, Flown, against_plain_orbits
-from singimpact.bench.selftest.rows import Row, Tally
+from singimpact.bench.selftest.draws import LEAST, Flown, compared
+from singimpact.bench.selftest.rows import Tally
 from singimpact.bench.truth.graded_steps import HIT, MISS
 from singimpact.bench.truth.plain_orbits import PlainOrbits
 from singimpact.status import Status
-
-LANES, GRAZES = "states of a batch", "beside a graze"
 
 
 @dataclass(frozen=True)
@@ -37,13 +35,12 @@ class BatchSettings:
 BATCHES = BatchSettings()
 
 
-@against_plain_orbits(LANES)
-def lanes(flown: Flown, plain: PlainOrbits) -> Row:
+@compared("states of a batch")
+def lanes(flown: Flown, tally: Tally) -> None:
     """`osc.iterate` of an array, each state against its own flights."""
-    tally = Tally(LANES)
-    hit = np.flatnonzero(flown.step.status == Status.hit)
+    hit, plain = np.flatnonzero(flown.step.status == Status.hit), flown.plain
     if not hit.size:
-        return Row(LANES, note="no flight that was drawn returns")
+        return
     places = np.resize(hit, BATCHES.states)
     # repeated states are moved by less than a thousandth, so that all of an array differ
     tau, v = flown.tau[places] + 1e-4 * np.arange(places.size) / flown.scales.rate, flown.v[places]
@@ -53,12 +50,10 @@ def lanes(flown: Flown, plain: PlainOrbits) -> Row:
         if ends.wall is not None:
             ends = replace(ends, v=np.where(ends.wall, -ends.v, ends.v))
         tally.restart()
-        for at in range(tau.size):
-            if tally.late:
-                tally.leave("CPU time used up", tau.size - at)
-                return tally.row()
+        for at in tally.in_time(range(tau.size)):
             _lane(plain, (float(tau[at]), float(v[at])), ends, (at, impacts), tally)
-    return tally.row()
+        if tally.late:
+            return
 
 
 def _lane(plain: PlainOrbits, state: tuple[float, float], ends: Any, lane: tuple[int, int], tally: Tally) -> None:
@@ -89,13 +84,13 @@ def _lane(plain: PlainOrbits, state: tuple[float, float], ends: Any, lane: tuple
         tally.judge(float(max(abs(passed - true[0]) / late, abs(ends.v[at] - true[1]) / fast)), call)
 
 
-@against_plain_orbits(GRAZES)
-def grazes(flown: Flown, plain: PlainOrbits) -> Row:
+@compared("beside a graze", "no launch that grazes lies among those looked at")
+def grazes(flown: Flown, tally: Tally) -> None:
     """`osc.impact_map` and `osc.iterate` of states on both sides of a launch that grazes."""
-    tally = Tally(GRAZES)
+    plain = flown.plain
     tau, v = grazing_states(flown, plain)
     if not tau.size:
-        return Row(GRAZES, note="no launch that grazes lies among those looked at")
+        return
     compile_entries(flown.osc)
     # an array longer than a batch; the batch kernels take no shorter one
     ends = flown.osc.iterate(np.resize(tau, max(tau.size, 2 * 64)), np.resize(v, max(tau.size, 2 * 64)), 1)
@@ -103,7 +98,6 @@ def grazes(flown: Flown, plain: PlainOrbits) -> Row:
     tally.restart()
     for at in tally.in_time(range(tau.size)):
         _graze(plain, (float(tau[at]), float(v[at])), (step, ends), at, tally)
-    return tally.row()
 
 
 def _graze(plain: PlainOrbits, state: tuple[float, float], answers: tuple[Any, Any], at: int, tally: Tally) -> None:

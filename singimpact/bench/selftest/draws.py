@@ -1,7 +1,7 @@
 """Random states of a model, in its own units of time and velocity, and their flights."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import wraps
 from math import isfinite, pi, sqrt
 from typing import Any, NamedTuple
@@ -74,26 +74,42 @@ class Flown(NamedTuple):
 
     @property
     def plain(self) -> PlainOrbits:
-        """The model in `bench.truth.plain_orbits`; TypeError where it holds an algebraic number given as a root."""
+        """The model in `bench.truth.plain_orbits`; an algebraic number that is given as a root is not comparable."""
         units = self.scales
-        return plain_orbits(self.osc, units.rate, units.horizon, units.fast)
+        try:
+            return plain_orbits(self.osc, units.rate, units.horizon, units.fast)
+        except TypeError as reason:
+            raise NotComparable(reason) from reason
 
     def call(self, at: int, name: str = "impact_map") -> str:
         """A state as it is typed."""
         return f"osc.{name}({float(self.tau[at])!r}, {float(self.v[at])!r}, horizon={self.scales.horizon:.6g})"
 
 
-def against_plain_orbits(name: str) -> Callable[[Callable[[Flown, PlainOrbits], Row]], Callable[[Flown], Row]]:
-    """A row that compares with `Flown.plain`, which a model with an algebraic number given as a root does not have."""
+class NotComparable(Exception):
+    """A row does not apply to a model, for the reason given."""
 
-    def row_of(judge: Callable[[Flown, PlainOrbits], Row]) -> Callable[[Flown], Row]:
+
+def compared(
+    name: str, nothing: str = "no flight that was drawn returns"
+) -> Callable[[Callable[[Flown, Tally], None]], Callable[[Flown], Row]]:
+    """A row of the table, from a function that judges states in a tally.
+
+    Parameters
+    ----------
+    name : of the row. nothing : the note where there is no state to judge.
+    """
+
+    def row_of(judge: Callable[[Flown, Tally], None]) -> Callable[[Flown], Row]:
         @wraps(judge)
         def row(flown: Flown) -> Row:
+            tally = Tally(name)
             try:
-                plain = flown.plain
-            except TypeError as reason:
+                judge(flown, tally)
+            except NotComparable as reason:
                 return Row(name, note=f"does not apply: {reason}")
-            return judge(flown, plain)
+            result = tally.row()
+            return result if result.tried else replace(result, note=nothing)
 
         return row
 

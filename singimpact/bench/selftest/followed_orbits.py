@@ -9,13 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from singimpact.algebra.numbers import EPSILON
-from singimpact.bench.selftest.draws import LEAST, Flown, against_plain_orbits
-from singimpact.bench.selftest.rows import Row, Tally
+from singimpact.bench.selftest.draws import LEAST, Flown, NotComparable, compared
+from singimpact.bench.selftest.rows import Tally
 from singimpact.bench.truth.graded_steps import HIT, MISS, UNDECIDED
 from singimpact.bench.truth.plain_orbits import Impact, PlainOrbits
 from singimpact.status import Status
-
-ORBIT_NAME, LIMIT_NAME = "orbits, event by event", "chatter limits"
 
 
 @dataclass(frozen=True)
@@ -41,16 +39,11 @@ class OrbitSettings:
 ORBITS = OrbitSettings()
 
 
-@against_plain_orbits(ORBIT_NAME)
-def orbits(flown: Flown, plain: PlainOrbits) -> Row:
+@compared("orbits, event by event", "no orbit that was flown has an event")
+def orbits(flown: Flown, tally: Tally) -> None:
     """All events of `osc.orbit`: impacts, ends of chatter, lift-offs, and what comes last."""
-    tally = Tally(ORBIT_NAME)
-    for at in _starts(flown):
-        if tally.late:
-            break
-        _orbit(flown, plain, at, tally)
-    row = tally.row()
-    return row if row.tried else Row(ORBIT_NAME, note="no orbit that was flown has an event")
+    for at in tally.in_time(_starts(flown)):
+        _orbit(flown, at, tally)
 
 
 def _starts(flown: Flown) -> list[int]:
@@ -60,8 +53,8 @@ def _starts(flown: Flown) -> list[int]:
     return list(dict.fromkeys([*spread.tolist(), *slow[: ORBITS.slow_orbits].tolist()]))
 
 
-def _orbit(flown: Flown, plain: PlainOrbits, at: int, tally: Tally) -> None:
-    orbit = flown.osc.orbit(flown.tau[at], flown.v[at], ORBITS.impacts)
+def _orbit(flown: Flown, at: int, tally: Tally) -> None:
+    orbit, plain = flown.osc.orbit(flown.tau[at], flown.v[at], ORBITS.impacts), flown.plain
     call = f"{flown.call(at, 'orbit').split(', horizon')[0]}), event "
     tau, v, kind = orbit.tau.tolist(), orbit.speeds.tolist(), orbit.kind.tolist()
     for index in range(1, len(tau)):
@@ -162,22 +155,20 @@ def _last(
         tally.leave(f"ends in {phase[0]}")
 
 
-@against_plain_orbits(LIMIT_NAME)
-def limits(flown: Flown, plain: PlainOrbits) -> Row:
+@compared("chatter limits", "does not apply: no slow state that was drawn is pressed")
+def limits(flown: Flown, tally: Tally) -> None:
     """`osc.chatter_limit` of slow states."""
+    plain = flown.plain
     if not any(wall.slope < 1 for wall in (plain, plain.above) if wall is not None):
-        return Row(LIMIT_NAME, note="does not apply: rho is not smooth at rest, or has slope -1: no geometric series")
-    tally = Tally(LIMIT_NAME)
+        raise NotComparable("rho is not smooth at rest, or has slope -1: no geometric series")
     pressed = plain.pushes(flown.tau) < 0
     slow = (flown.v < ORBITS.slow * flown.scales.fast) & (flown.step.status == Status.hit)
-    places = np.flatnonzero(pressed & slow)[: ORBITS.limits].tolist()
-    for at in tally.in_time(places):
-        _limit(flown, plain, at, tally)
-    return tally.row() if places else Row(LIMIT_NAME, note="does not apply: no slow state that was drawn is pressed")
+    for at in tally.in_time(np.flatnonzero(pressed & slow)[: ORBITS.limits].tolist()):
+        _limit(flown, at, tally)
 
 
-def _limit(flown: Flown, plain: PlainOrbits, at: int, tally: Tally) -> None:
-    tau, v = float(flown.tau[at]), float(flown.v[at])
+def _limit(flown: Flown, at: int, tally: Tally) -> None:
+    tau, v, plain = float(flown.tau[at]), float(flown.v[at]), flown.plain
     limit = flown.osc.chatter_limit(tau, v, impacts=ORBITS.most)
     status = Status(int(limit.status))
     if status == Status.unresolved:

@@ -10,51 +10,26 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.numbers import EPSILON, Array
-from singimpact.bench.selftest.draws import DRAW, LEAST, Flown, against_plain_orbits
-from singimpact.bench.selftest.rows import Row, Tally
-from singimpact.bench.truth.plain_orbits import PlainOrbits
+from singimpact.bench.selftest.draws import DRAW, LEAST, Flown, NotComparable, compared
+from singimpact.bench.selftest.rows import Tally
 from singimpact.oscillator.rebound import rho_of
 from singimpact.status import Status
-
-DERIVATIVE, REBOUND = "D G against differences", "rebound"
-
 
 # Flights forward and back: `inverse_map` of the impact gives the launch, within what rounding explains. There is no
 # independent truth: both flights, D G and the error estimates are those of the package.
 
-ROUND_TRIP_NAME = "flown forward and back"
 
-
-@dataclass(frozen=True)
-class RoundTripSettings:
-    """Tolerances of a launch that was flown forward and back.
-
-    Parameters
-    ----------
-    rounding : of the landing state and of the flight back, in units of epsilon: the 10 of 10 kappa epsilon.
-    lost : where rounding explains more than this part of v or of the flight time, the map is not linear over it, and
-        the flight back may even miss the obstacle: such a state is undecided.
-    """
-
-    rounding: float = 10.0
-    lost: float = 1e-2
-
-
-ROUND_TRIP = RoundTripSettings()
-
-
-def round_trip(flown: Flown) -> Row:
-    """The row of the table."""
+@compared("flown forward and back")
+def round_trip(flown: Flown, tally: Tally) -> None:
+    """Launches that `inverse_map` gives back."""
     if flown.osc.plastic:
-        return Row(ROUND_TRIP_NAME, note="does not apply: restitution = 0")
-    tally = Tally(ROUND_TRIP_NAME)
+        raise NotComparable("restitution = 0")
     hit = np.flatnonzero(flown.step.status == Status.hit)
     for begin in range(0, hit.size, DRAW.together):
         if tally.late:
             tally.leave("CPU time used up", hit.size - begin)
             break
         _judge(flown, hit[begin : begin + DRAW.together], tally)
-    return tally.row() if hit.size else Row(ROUND_TRIP_NAME, note="no flight that was drawn returns")
 
 
 def _judge(flown: Flown, places: Array, tally: Tally) -> None:
@@ -73,7 +48,7 @@ def _judge(flown: Flown, places: Array, tally: Tally) -> None:
             state += "; derivative or an error of the flight is nan, so nothing says how near that must be"
         if status == Status.unresolved:
             tally.leave("unresolved")
-        elif by_v[at] > ROUND_TRIP.lost * v or by_tau[at] > ROUND_TRIP.lost * time:
+        elif by_v[at] > RESPONSES.lost * v or by_tau[at] > RESPONSES.lost * time:
             tally.leave("rounding explains any difference")
         elif other_branch[at]:
             tally.leave("another velocity rebounds alike")
@@ -96,7 +71,7 @@ def allowed(flown: Flown, places: Array) -> tuple[tuple[Array, Array], bool]:
     with np.errstate(all="ignore"):
         inverse = np.abs(np.array([[d, -b], [-c, a]]) / (a * d - b * c))
         time, landed, speed = (getattr(step, name)[places] for name in ("flight_time", "tau", "v"))
-        rounding = ROUND_TRIP.rounding * EPSILON
+        rounding = RESPONSES.back * EPSILON
         late = step.time_error[places] * time + rounding * np.maximum(np.abs(landed), time)
         fast = (step.velocity_error[places] + rounding) * speed
         by_tau = inverse[0, 0] * late + inverse[0, 1] * fast + rounding * np.maximum(np.abs(tau), time)
@@ -108,7 +83,12 @@ def allowed(flown: Flown, places: Array) -> tuple[tuple[Array, Array], bool]:
 class ResponseSettings:
     """The number of states, and the tolerances of their comparison."""
 
-    states: int = 100
+    # of the landing state and of the flight back, in units of epsilon: the 10 of 10 kappa epsilon
+    back: float = 10.0
+    # where rounding explains more than this part of v or of the flight time, the map is not linear over it, and the
+    # flight back may even miss the obstacle: such a state is undecided
+    lost: float = 1e-2
+    states: int = 100  # at which D G is compared
     # of an entry, relative to its natural size, beside the error of the differences
     wrong: float = 1e-6
     # a larger error of a difference, relative to the size of its entry, decides nothing
@@ -122,22 +102,18 @@ class ResponseSettings:
 RESPONSES = ResponseSettings()
 
 
-@against_plain_orbits(DERIVATIVE)
-def derivatives(flown: Flown, plain: PlainOrbits) -> Row:
+@compared("D G against differences")
+def derivatives(flown: Flown, tally: Tally) -> None:
     """All four entries of `osc.derivative`."""
-    tally = Tally(DERIVATIVE)
     places = np.flatnonzero(flown.step.status == Status.hit)[: RESPONSES.states]
-    if not places.size:
-        return Row(DERIVATIVE, note="no flight that was drawn returns")
     matrices = flown.osc.derivative(flown.tau[places], flown.v[places], horizon=flown.scales.horizon).matrix
     tally.restart()
     for index in tally.in_time(range(places.size)):
-        _matrix(flown, plain, int(places[index]), matrices[index], tally)
-    return tally.row()
+        _matrix(flown, int(places[index]), matrices[index], tally)
 
 
-def _matrix(flown: Flown, plain: PlainOrbits, at: int, matrix: Array, tally: Tally) -> None:
-    tau, v = float(flown.tau[at]), float(flown.v[at])
+def _matrix(flown: Flown, at: int, matrix: Array, tally: Tally) -> None:
+    tau, v, plain = float(flown.tau[at]), float(flown.v[at]), flown.plain
     quotients, hit = plain.difference_quotients(tau, v), plain.impact(tau, v)
     if quotients is None or not np.isfinite(hit.v):
         tally.leave("a flight beside it does not return")
@@ -152,10 +128,10 @@ def _matrix(flown: Flown, plain: PlainOrbits, at: int, matrix: Array, tally: Tal
     tally.judge(ratio, f"{state}: {matrix.round(9).tolist()}, differences {true.round(9).tolist()}")
 
 
-@against_plain_orbits(REBOUND)
-def rebounds(flown: Flown, plain: PlainOrbits) -> Row:
+@compared("rebound")
+def rebounds(flown: Flown, tally: Tally) -> None:
     """The state after a hit: tau + T, and rho of the velocity."""
-    tally, step = Tally(REBOUND), flown.step
+    step, plain = flown.step, flown.plain
     for at in np.flatnonzero((step.status == Status.hit) | (step.status == Status.no_rebound)).tolist():
         velocity, v = float(step.velocity[at]), float(step.v[at])
         true = abs(plain.rebound(velocity))
@@ -169,5 +145,3 @@ def rebounds(flown: Flown, plain: PlainOrbits) -> Row:
         passed = flown.tau[at] + step.flight_time[at]
         late = 4 * 2.0**-52 * (abs(flown.tau[at]) + step.flight_time[at])
         tally.judge(float(max(abs(v - true) / near, abs(step.tau[at] - passed) / late)), state)
-    row = tally.row()
-    return row if row.tried else Row(REBOUND, note="no flight that was drawn returns")

@@ -48,12 +48,12 @@ def selftest(osc: ImpactOscillator, *, states: int = 1000, seed: int = 0) -> Sel
 
     Notes
     -----
-    The rows are: flights forward and back; flights against fixed steps of order 8, against balls, and against
-    `digits=20`; events of orbits (impacts, ends of chatter, lift-offs) and chatter limits; D G against differences of
-    flights; rho; each state of an array longer than a batch; launches beside a graze; pixels of basins; signs of a_c
-    beside tangency points. "Flown forward and back" compares the package with itself, and `digits=20` compares its two
-    arithmetics. The truths of the others share with the package f, g and rho as expression trees, the period and the
-    default horizon.
+    The rows are: flights forward and back; flights against fixed steps of order 8, against the balls of the program
+    that checks certificates, and against `digits=20`; events of orbits (impacts, ends of chatter, lift-offs) and
+    chatter limits; D G against differences of flights; rho; each state of an array longer than a batch; launches
+    beside a graze; pixels of basins; signs of a_c beside tangency points. "Flown forward and back" compares the package
+    with itself, and `digits=20` its two ways to fly. The second program shares nothing but the texts of the model; the
+    truths of the others share with the package f, g and rho as expression trees, the period and the default horizon.
 
     A row starts no further state after 10 s of CPU time; states that are left are undecided.
 

@@ -8,12 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from singimpact.algebra.numbers import EPSILON, Array
-from singimpact.bench.selftest.draws import Flown
-from singimpact.bench.selftest.rows import Row, Tally
+from singimpact.bench.selftest.draws import Flown, NotComparable, compared
+from singimpact.bench.selftest.rows import Tally
 from singimpact.contact.points import tangency_points
 from singimpact.inputs import InputError
 
-NAME = "tangency points"
 SIGNS = {"gamma": (-1, 1), "foliation": (1, -1)}
 
 
@@ -37,13 +36,14 @@ class GridSettings:
 GRID = GridSettings()
 
 
-def row(flown: Flown) -> Row:
-    """The row of the table."""
-    osc, tally = flown.osc, Tally(NAME)
+@compared("tangency points")
+def row(flown: Flown, tally: Tally) -> None:
+    """Points of the package, and changes of the sign of a_c on the grid."""
+    plain = flown.plain
     try:
-        points, plain = tangency_points(osc), flown.plain
+        points = tangency_points(flown.osc)
     except (InputError, TypeError) as reason:
-        return Row(NAME, note=f"does not apply: {reason}")
+        raise NotComparable(reason) from reason
     tau, period = np.array([point.tau for point in points]), flown.scales.period
     low, high = flown.scales.low, flown.scales.high
     if period is None and tau.size:
@@ -67,7 +67,6 @@ def row(flown: Flown) -> Row:
             tally.judge(0.0 if inside % 2 else np.inf, finding)
     if not (changed.size or tau.size):
         tally.judge(0.0, "")  # no point and no change of sign: one agreement
-    return tally.row()
 
 
 def _kinds(flown: Flown, tau: Array, kinds: list[str], interval: float, tally: Tally) -> None:

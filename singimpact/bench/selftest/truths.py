@@ -1,22 +1,24 @@
 """Flights of one model against small fixed steps, balls, and more digits.
 
-Fixed steps and balls (`bench.truth`) share with the package f and g as expression trees; kappa is that of the package.
-`digits=20` is the package's own flight in other arithmetic, by other code from the recurrence on.
+Fixed steps (`bench.truth`) share with the package f and g as expression trees; kappa is that of the package. Balls are
+those of the second program, which shares nothing but the texts of the model. `digits=20` is the package's enclosure, by
+other code than its flights in doubles from the recurrence on; it decides where doubles and fixed steps disagree.
 """
 
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Any
 
-import flint
 import numpy as np
 
 from singimpact.algebra.numbers import EPSILON
-from singimpact.algebra.precision import balls_at, digits_at
-from singimpact.bench.selftest.draws import Flown
-from singimpact.bench.selftest.rows import Row, Tally
-from singimpact.bench.truth import enclosed_flight, graded_steps, plain_steps
-from singimpact.bench.truth.enclosed_flight import Refused
+from singimpact.bench.measuring import relative_error
+from singimpact.bench.selftest.draws import Flown, compared
+from singimpact.bench.selftest.rows import Tally
+from singimpact.bench.truth import graded_steps
 from singimpact.bench.truth.graded_steps import HIT, MISS
+from singimpact.bench.truth.hit_in_balls import enclosed, second_program
+from singimpact.certificates.checker import Refused
 from singimpact.status import Status
 
 ENDED = (Status.no_return, Status.escaped)
@@ -32,11 +34,11 @@ class TruthSettings:
     wanted : the digits.
     wrong : least relative error of a flight time or a velocity that is wrong against the fixed steps, which agree with
         themselves to 1e-11; 100 kappa epsilon counts where it is larger.
-    finer : of the fixed steps, where balls refuse to decide between them and the package.
+    finer : of the fixed steps, where the enclosure does not decide between them and the package.
     """
 
-    balls: int = 50
-    digits: int = 20
+    balls: int = 20
+    digits: int = 50
     wanted: int = 20
     wrong: float = 1e-9
     finer: float = 1 / 16
@@ -45,17 +47,13 @@ class TruthSettings:
 TRUTHS = TruthSettings()
 
 
-def fixed_steps(flown: Flown) -> Row:
-    """Flights against fixed steps; where the two disagree, balls decide."""
-    tally = Tally("against small fixed steps")
+@compared("against small fixed steps")
+def fixed_steps(flown: Flown, tally: Tally) -> None:
+    """Flights against fixed steps; where the two disagree, the enclosure decides."""
     tally.leave("CPU time of the flights used up", flown.left)
-    try:
-        motion = plain_steps.motion(flown.osc, flown.scales.rate)
-    except TypeError as reason:
-        return Row(tally.compared, note=f"does not apply: {reason}")
+    motion = flown.plain.motion
     for at in tally.in_time(range(flown.tau.size)):
         _one(flown, at, motion, tally)
-    return tally.row()
 
 
 def _one(flown: Flown, at: int, motion: graded_steps.Motion, tally: Tally) -> None:
@@ -71,7 +69,7 @@ def _one(flown: Flown, at: int, motion: graded_steps.Motion, tally: Tally) -> No
     if not ratio <= 1:
         ratio, decided = _arbitrated(flown, at, motion, ratio)
         if not decided:
-            tally.leave("steps and balls do not settle")
+            tally.leave("steps and the enclosure do not settle")
             return
     tally.judge(ratio, _told(flown, at, true.flight_time))
 
@@ -81,18 +79,15 @@ def _ending(true: graded_steps.Hit) -> tuple[float | None, float]:
 
 
 def _arbitrated(flown: Flown, at: int, motion: graded_steps.Motion, before: float) -> tuple[float, bool]:
-    """The difference from the ball, or from finer steps where there is no ball; and whether one of these decides."""
+    """The difference from the enclosure, or from finer steps where there is none; and whether one of these decides."""
     tau, v, horizon = float(flown.tau[at]), float(flown.v[at]), flown.scales.horizon
     try:
-        if flown.osc.upper is not None:
-            raise Refused("balls know one wall")
-        ball = enclosed_flight.first_hit(flown.osc, tau, v, horizon)
-    except (Refused, ArithmeticError, TypeError):
+        ball = enclosed(flown.osc, Fraction(tau), Fraction(v), horizon, TRUTHS.wanted)
+    except (ArithmeticError, TypeError):
         true = graded_steps.first_hit(motion, tau, v, horizon, graded_steps.FINENESS.first * TRUTHS.finer)
-        settled = true.status in (HIT, MISS) and not _off(flown, at, *_ending(true)) <= 1
-        return before, settled
-    time = None if ball.flight_time is None else float(ball.flight_time)
-    return _off(flown, at, time, float(ball.velocity or 0.0)), True
+        return before, true.status in (HIT, MISS) and not _off(flown, at, *_ending(true)) <= 1
+    time, velocity = (None, 0.0) if ball is None else (float(ball.flight_time), float(ball.velocity))
+    return _off(flown, at, time, velocity), True
 
 
 def _off(flown: Flown, at: int, time: float | None, velocity: float) -> float:
@@ -120,24 +115,21 @@ def _some(flown: Flown, count: int) -> list[int]:
     return [int(place) for place in np.unique(spread.astype(int))]
 
 
-def balls(flown: Flown) -> Row:
-    """Flights enclosed in balls: the error is within `time_error` and `velocity_error`."""
-    tally = Tally("within .error of balls")
-    if flown.osc.upper is not None:
-        return Row(tally.compared, note="does not apply: balls know one wall")
+@compared("within .error of balls")
+def balls(flown: Flown, tally: Tally) -> None:
+    """Flights enclosed by the second program: the error is within `time_error` and `velocity_error`."""
     for at in tally.in_time(_some(flown, TRUTHS.balls)):
         try:
-            ball = enclosed_flight.first_hit(flown.osc, float(flown.tau[at]), float(flown.v[at]), flown.scales.horizon)
-        except (Refused, ArithmeticError, TypeError):
+            ball = second_program(flown.osc, float(flown.tau[at]), float(flown.v[at]), flown.scales.horizon)
+        except Refused:
             tally.leave("balls refuse")
-            continue
-        _compared(flown, at, (ball.flight_time, ball.velocity), tally)
-    return tally.row()
+        else:
+            _compared(flown, at, ball or (None, None), tally)
 
 
-def digits(flown: Flown) -> Row:
+@compared(f"within .error of digits={TRUTHS.wanted}")
+def digits(flown: Flown, tally: Tally) -> None:
     """Flights with `digits=20`: the flights in doubles are within their `time_error` and `velocity_error`."""
-    tally = Tally(f"within .error of digits={TRUTHS.wanted}")
     for at in tally.in_time(_some(flown, TRUTHS.digits)):
         hit = flown.osc.first_hit(
             float(flown.tau[at]), float(flown.v[at]), digits=TRUTHS.wanted, horizon=flown.scales.horizon
@@ -147,7 +139,6 @@ def digits(flown: Flown) -> Row:
         else:
             there = hit.status == Status.hit
             _compared(flown, at, (hit.flight_time, hit.velocity) if there else (None, None), tally)
-    return tally.row()
 
 
 def _compared(flown: Flown, at: int, truth: tuple[Any, Any], tally: Tally) -> None:
@@ -160,14 +151,5 @@ def _compared(flown: Flown, at: int, truth: tuple[Any, Any], tally: Tally) -> No
         tally.judge(0.0 if same else np.inf, _told(flown, at, "none" if truth[0] is None else float(truth[0])))
     else:
         pairs = ((step.flight_time, truth[0], step.time_error), (step.velocity, truth[1], step.velocity_error))
-        ratio = np.max([_relative(values[at], true) / error[at] for values, true, error in pairs])
+        ratio = np.max([relative_error(float(values[at]), true) / error[at] for values, true, error in pairs])
         tally.judge(float(ratio), _told(flown, at, float(truth[0])))
-
-
-def _relative(found: float, true: Any) -> float:
-    """|found/true - 1| for a ball or a number of many digits."""
-    if hasattr(true, "mid"):
-        with balls_at(256):
-            return float(abs(flint.arb(float(found)) / true - 1).mid())
-    with digits_at(2 * TRUTHS.wanted) as mp:
-        return float(abs(mp.mpf(float(found)) / mp.convert(true) - 1))

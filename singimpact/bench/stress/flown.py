@@ -1,7 +1,12 @@
-"""Impacts in balls of 60 digits from `bench.truth`, with their derivatives, and the sequences of flights."""
+"""Impacts in balls of 60 digits from `bench.truth`, with their derivatives, and the sequences of flights.
+
+Truth of linear and cubic models is `first_hit`, which shares nothing with the package; of steep ones, and of those with
+t in f, `enclosed`, which shares nothing with the flights in doubles that are judged here.
+"""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from fractions import Fraction
 from functools import lru_cache, partial
 from math import pi
 from typing import Any
@@ -9,12 +14,12 @@ from typing import Any
 import flint
 import numpy as np
 
+from singimpact.algebra.balls import as_rational
 from singimpact.algebra.precision import balls_at
 from singimpact.bench.stress.judging import STEP, Judge, Trial
 from singimpact.bench.stress.launches import Launch, SteepLaunch, both
-from singimpact.bench.truth import enclosed_flight
-from singimpact.bench.truth.enclosed_flight import EnclosureSettings
 from singimpact.bench.truth.first_hit import first_of_both
+from singimpact.bench.truth.hit_in_balls import InBalls, enclosed
 from singimpact.flights.inverse_map import backwards
 from singimpact.status import Status
 
@@ -22,72 +27,25 @@ SQUARED = 1e-140  # the height of a flight is of the size of v squared, and belo
 IMPACTS = 4  # of an orbit: every impact multiplies the condition number, so more impacts would hide errors
 GONE = (Status.no_return, Status.escaped)
 
-
-# Models with steep layers: impacts in balls by `bench.truth.enclosed_flight`, and their derivatives as differences of
-# such balls.
-
-# differences over 10^-STEP, and differences of these, keep 10 digits
-EXACT = EnclosureSettings(accuracy=1e-60, bits=240)
-Pair = tuple[Any, Any]
-
-
-def landed(launch: SteepLaunch, tau: Any, v: Any, sign: int) -> tuple[Any, Any, tuple[Pair, Pair]] | None:
-    """Time and velocity of the next impact and their derivatives by (tau, v); None where there is none.
-
-    Parameters
-    ----------
-    tau, v : numbers or balls, of which the midpoints are flown. sign : -1 for the flight backwards.
-    """
-    start = [flint.arb(flint.arb(number).mid()) for number in (tau, v)]
-    time, velocity = _flown(launch, *map(_key, start), sign)
-    if time is None:
-        return None
-    small, rows = flint.arb(10) ** -STEP, []
-    for moved in (0, 1):
-        size = max(abs(float(start[moved])), 1.0) if moved == 0 else float(start[1])
-        change = flint.arb((small * size).mid())
-        there = [number + change if index == moved else number for index, number in enumerate(start)]
-        late, fast = _flown(launch, *(_key(flint.arb(number.mid())) for number in there), sign)
-        if late is None:
-            return None
-        rows.append(((late - time) / change, (fast - velocity) / change))
-    (time_by_tau, velocity_by_tau), (time_by_v, velocity_by_v) = rows
-    return time, velocity, ((time_by_tau, time_by_v), (velocity_by_tau, velocity_by_v))
-
-
-def _key(exact: Any) -> Pair:
-    """Mantissa and exponent of an exact ball."""
-    mantissa, exponent = exact.man_exp()
-    return int(mantissa), int(exponent)
+DIGITS = 45  # of the hits of steep models, whose differences over 10^-STEP keep 20
 
 
 @lru_cache(maxsize=4096)  # the functions of a place fly the same states
-def _flown(launch: SteepLaunch, tau: Pair, v: Pair, sign: int) -> Pair:
+def landed(launch: SteepLaunch, tau: Fraction, v: Fraction, sign: int) -> InBalls | None:
+    """The next impact of a steep model in balls, with its derivatives; None where there is none.
+
+    Parameters
+    ----------
+    sign : -1 for the flight backwards.
+    """
     model = launch.model if sign > 0 else backwards(launch.model)
-    state = [flint.arb(mantissa) * flint.arb(2) ** exponent for mantissa, exponent in (tau, v)]
-    with balls_at(launch.bits):
-        found = enclosed_flight.first_hit(model, state[0], state[1], launch.horizon, EXACT)
-    return found.flight_time, found.velocity
+    return enclosed(model, tau, v, launch.horizon, DIGITS)
 
 
-@dataclass(frozen=True)
-class Landing:
-    """The next impact of a state in balls: flight time, velocity up from its wall; their derivatives by (tau, v)."""
-
-    time: Any
-    velocity: Any
-    by_state: tuple[tuple[Any, Any], tuple[Any, Any]]
-
-    def moved(self, sizes: tuple[float, float]) -> list[Any]:
-        """The change of time and velocity for a change of the state by its size."""
-        return [sum(abs(part) * size for part, size in zip(row, sizes, strict=True)) for row in self.by_state]
-
-
-def landing(launch: Launch, tau: Any, v: Any, sign: int = 1) -> Landing | int:
+def landing(launch: Launch, tau: Any, v: Any, sign: int = 1) -> InBalls | int:
     """The impact, or the status that is right: sticks, graze or no return.  Call it with the working precision set."""
     if isinstance(launch, SteepLaunch):
-        there = landed(launch, tau, v, sign)
-        return int(Status.no_return) if there is None else Landing(*there)
+        return landed(launch, as_rational(flint.arb(tau)), as_rational(flint.arb(v)), sign) or int(Status.no_return)
     motion = launch.motion(tau, v, sign)
     if v == 0 and not motion.at(0)[2] > 0:
         return int(Status.sticks)
@@ -100,7 +58,7 @@ def landing(launch: Launch, tau: Any, v: Any, sign: int = 1) -> Landing | int:
     (time, u), e = hit, motion.at(hit[0])[2]
     by_tau, by_v = motion.variations(time) if float(v) else (motion.variations(time)[0], (0 * u, 0 * u))
     rows = [(-by[0] / u, by[1] - e * by[0] / u) for by in (by_tau, by_v)]
-    return Landing(time, u, ((rows[0][0], rows[1][0]), (rows[0][1], rows[1][1])))
+    return InBalls(time, u, ((rows[0][0], rows[1][0]), (rows[0][1], rows[1][1])))
 
 
 def sizes(launch: Launch, time: Any) -> tuple[float, float]:
@@ -124,14 +82,17 @@ def _swept(judge: Callable[[Launch], Trial | None], place: str, points: int) -> 
 
 
 def _first_hit(launch: Launch) -> Trial:
-    hit, true = (
-        launch.model.first_hit(launch.tau, launch.v, horizon=launch.horizon),
-        landing(launch, launch.tau, launch.v),
-    )
-    if isinstance(true, int) or hit.status != Status.hit:
-        return Trial(str(launch), status=_status(hit.status, true if isinstance(true, int) else int(Status.hit)))
-    found = [float(hit.flight_time), float(hit.velocity)]
-    return Trial(str(launch), found, [true.time, true.velocity], true.moved(sizes(launch, true.time)))
+    hit = launch.model.first_hit(launch.tau, launch.v, horizon=launch.horizon)
+    return hit_trial(launch, int(hit.status), float(hit.flight_time), float(hit.velocity))
+
+
+def hit_trial(launch: Launch, status: int, flight_time: float, velocity: float) -> Trial:
+    """Flight time and velocity, up from the wall of the launch, that doubles give.  Call it with a precision set."""
+    true = landing(launch, launch.tau, launch.v)
+    if isinstance(true, int) or status != Status.hit:
+        return Trial(str(launch), status=_status(status, true if isinstance(true, int) else int(Status.hit)))
+    moved = true.moved(sizes(launch, true.flight_time))
+    return Trial(str(launch), [flight_time, velocity], [true.flight_time, true.velocity], moved)
 
 
 def _impact_map(launch: Launch) -> Trial:
@@ -139,8 +100,8 @@ def _impact_map(launch: Launch) -> Trial:
     true = landing(launch, launch.tau, launch.v)
     if isinstance(true, int) or step.status != Status.hit:
         return Trial(str(launch), status=_status(step.status, true if isinstance(true, int) else int(Status.hit)))
-    r, late = flint.arb(launch.restitution), true.moved(sizes(launch, true.time))
-    values = [true.time + launch.tau, r * abs(true.velocity)]
+    r, late = flint.arb(launch.restitution), true.moved(sizes(launch, true.flight_time))
+    values = [true.flight_time + launch.tau, r * abs(true.velocity)]
     return Trial(str(launch), [float(step.tau), float(step.v)], values, [late[0], r * late[1]])
 
 
@@ -150,9 +111,11 @@ def _inverse(launch: Launch) -> Trial:
     true = landing(launch, -launch.tau, flint.arb(landed) / flint.arb(launch.restitution), -1)
     if isinstance(true, int) or before.status != Status.hit:
         return Trial(str(launch), status=_status(before.status, true if isinstance(true, int) else int(Status.hit)))
-    size, speed = sizes(launch, true.time)
+    size, speed = sizes(launch, true.flight_time)
     late = true.moved((size, speed))
-    return Trial(str(launch), [float(before.tau), float(before.v)], [launch.tau - true.time, abs(true.velocity)], late)
+    return Trial(
+        str(launch), [float(before.tau), float(before.v)], [launch.tau - true.flight_time, abs(true.velocity)], late
+    )
 
 
 def _flight(launch: Launch) -> Trial | None:
@@ -160,7 +123,7 @@ def _flight(launch: Launch) -> Trial | None:
     true = landing(launch, launch.tau, launch.v)
     if isinstance(true, int) or launch.v < SQUARED:
         return None
-    times = [float(true.time) * share for share in (1e-6, 0.5, 0.999)]
+    times = [float(true.flight_time) * share for share in (1e-6, 0.5, 0.999)]
     path_, motion = launch.model.flight(launch.tau, launch.v, times), launch.motion(launch.tau, launch.v)
     truth, slack = [], []
     for t in times:
@@ -205,7 +168,7 @@ def _matrix(launch: Launch, by_tau: Any, by_v: Any) -> tuple[list[Any], Any] | i
     if isinstance(true, int):
         return true
     r, ((a, b), (c, d)) = flint.arb(launch.restitution) * (1 if true.velocity > 0 else -1), true.by_state
-    return [1 + a, b, r * c, r * d], true.time
+    return [1 + a, b, r * c, r * d], true.flight_time
 
 
 def _orbit(launch: Launch) -> Trial | None:
@@ -228,10 +191,10 @@ def _chained(launch: Launch, tau: Any, v: Any) -> Trial | None:
         true = landing(launch, at[0].mid(), at[1].mid())
         if isinstance(true, int):
             return None
-        rounded = max(float(rounded[0]), float(true.time)), rounded[1]
+        rounded = max(float(rounded[0]), float(true.flight_time)), rounded[1]
         (a, b), (c, d) = true.by_state
         late = abs(1 + a) * rounded[0] + abs(b) * rounded[1], r * (abs(c) * rounded[0] + abs(d) * rounded[1])
-        at = at[0] + true.time, r * abs(true.velocity)
+        at = at[0] + true.flight_time, r * abs(true.velocity)
         launch = replace(launch, wall=launch.wall ^ bool(true.velocity > 0))
         rounded = late[0] + abs(at[0]), late[1] + abs(at[1])
     return Trial(str(launch), [float(tau), float(v)], list(at), list(rounded))

@@ -37,14 +37,16 @@ class Launch:
     v: float = 0.5
     upper: float | None = None
     wall: int = 0
+    upper_restitution: float | None = None
 
     @property
     def model(self) -> ImpactOscillator:
-        """The oscillator."""
+        """The oscillator; without an `upper_restitution` both walls have one."""
         if self.family == "linear":
-            return linear(self.omega, self.clearance, self.restitution, upper=self.upper)
-        walls = self.clearance, self.restitution
-        return ImpactOscillator(CUBIC, "cos(omega*t)", *walls, {"omega": self.omega}, upper=self.upper)
+            osc = linear(self.omega, self.clearance, self.restitution)
+        else:
+            osc = ImpactOscillator(CUBIC, "cos(omega*t)", self.clearance, self.restitution, {"omega": self.omega})
+        return osc if self.upper is None else osc.replace(upper=self.upper, upper_restitution=self.upper_restitution)
 
     def motion(self, tau: Any, v: Any, sign: int = 1) -> Linear | Cubic:
         """The flight from another state, in balls, up from its wall; sign -1: backwards."""
@@ -57,6 +59,14 @@ class Launch:
     def gap(self) -> Any:
         """The distance of both walls, a ball; None of one wall."""
         return None if self.upper is None else flint.arb(self.upper) - flint.arb(self.clearance)
+
+    def before_touch(self, time: float) -> tuple[Any, Any] | None:
+        """Flight time and velocity back from a touch of this wall; None where no flight touches it."""
+        with balls_at(BITS):
+            motion = self.motion(-time, 0.0, -1)
+            if not motion.at(0)[2] > 1e-3:
+                return None
+            return first_hit(motion if self.upper is None else Above(motion, self.gap), 0.0, 60.0)
 
     @property
     def horizon(self) -> float:
@@ -126,15 +136,12 @@ def _swan(family: str, points: int) -> Iterator[Launch]:
 def _grazing(family: str, points: int) -> Iterator[Launch]:
     """A backward flight from a state next to a graze."""
     for touch in (0.1, 1.0):
-        at = Launch(family, clearance=-0.4, tau=touch)
-        with balls_at(BITS):
-            motion = at.motion(-touch, 0.0, -1)
-            hit = first_hit(motion, 0.0, 60.0) if motion.at(0)[2] > 1e-3 else None
-        yield from _beside(at, touch, hit, points)
+        yield from _beside(Launch(family, clearance=-0.4), touch, points)
 
 
-def _beside(at: Launch, touch: float, hit: tuple[Any, Any] | None, points: int) -> Iterator[Launch]:
+def _beside(at: Launch, touch: float, points: int) -> Iterator[Launch]:
     """Launches at the lower wall beside the one whose flight grazes at a time, where a flight back from there hits."""
+    hit = at.before_touch(touch)
     if hit is None:
         return
     for off in powers(points, 13):
@@ -150,10 +157,7 @@ def _between(family: str, points: int) -> Iterator[Launch]:
     for v in powers(points, 150):
         yield Launch(family, v=v, upper=0.5)
     for touch in (0.8, 1.3):
-        at = Launch(family, clearance=-0.4, upper=0.6, wall=1)
-        with balls_at(BITS):
-            hit = first_hit(Above(at.motion(-touch, 0.0, -1), at.gap), 0.0, 60.0)
-        yield from _beside(at, touch, hit, points)
+        yield from _beside(Launch(family, clearance=-0.4, upper=0.6, wall=1), touch, points)
 
 
 def _long(family: str, points: int) -> Iterator[Launch]:

@@ -1,4 +1,7 @@
-"""Slow first hits that share no code with `flights`: what the fast ones are checked against.
+"""Slow first hits that share no code with what they judge.
 
-Not here: what is checked and how it is told (`bench.random_states`, `bench.steep_states`), other tools (`bench.peers`).
+Doubles are judged by closed forms (`first_hit`), fixed steps (`graded_steps`, `plain_steps`, `plain_orbits`) and
+enclosures; enclosures by the program that checks certificates (`hit_in_balls`).
+Not here: which states are judged (`bench.random_states`, `bench.steep_states`, `bench.selftest`), other tools
+(`bench.peers`).
 """

@@ -139,6 +139,7 @@ def _signature() -> Any:
     return returned(called, number[::1], number[:, ::1], numba.types.UniTuple(number, 2), *[number] * 4)
 
 
+@lru_cache(maxsize=64)
 def compiled(acceleration: Acceleration) -> Any:
     """An acceleration (t, x, x', parameters), compiled to one type: the kernel is compiled once for all of them."""
     import numba

@@ -4,21 +4,21 @@ The layers of a model are not known here, so the steps are graded by the rate of
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.expressions import Expression, subtract
+from singimpact.algebra.expressions import Expression, evaluate, names_in, subtract
 from singimpact.algebra.numbers import as_float
 from singimpact.bench.truth import graded_steps
 from singimpact.bench.truth.graded_steps import EVERYWHERE, Motion
-from singimpact.bench.truth.programs import Program
 from singimpact.oscillator.model import Oscillator
 
-FUNCTIONS = ("sin", "cos", "tan", "exp", "log", "sqrt", "atan", "tanh")
+FUNCTIONS = ("sin", "cos", "tan", "exp", "log", "sqrt", "atan", "tanh", "log1p")
 
 
 @lru_cache(maxsize=8)
@@ -39,30 +39,26 @@ def motion(osc: Oscillator, rate: float, above: bool = False) -> Motion:
     >>> round(graded_steps.first_hit(falling, 0.0, 3.0, 30.0).flight_time, 12)
     3.0
     """
-    space: dict[str, Any] = {name: getattr(math, name) for name in FUNCTIONS}
-    exec(compile(text(osc, above), "<acceleration>", "exec"), space)
     gap = math.inf if osc.upper is None else as_float(subtract(osc.upper, osc.clearance))
     wall = -as_float(osc.upper) if above and osc.upper is not None else as_float(osc.clearance)
     layers = np.array([[EVERYWHERE, 0.0, 1 / rate, 0.0, 0.0]])
-    return Motion(graded_steps.compiled(space["acceleration"]), np.zeros(1), layers, wall, gap)
+    acceleration = python_function("acceleration", text(osc, above))
+    return Motion(graded_steps.compiled(acceleration), np.zeros(1), layers, wall, gap)
 
 
 def text(osc: Oscillator, above: bool = False) -> str:
-    """The source of g - f in doubles, one operation a line; or with `above` that of (-x)''.
+    """The source of g - f in doubles; or with `above` that of (-x)''.
 
     Examples
     --------
     >>> print(text(Oscillator("x/2", "1", 0, "1/2")), end="")
     def acceleration(t, x, xdot, p):
-        s0 = 1.0
-        s1 = 0.5
-        s2 = x
-        s3 = s1 * s2
-        return s0 - s3
+        return 1.0 - ((0.5) * (x))
     """
-    lines, (g, f) = _written([osc.forcing(), osc.force()])
-    turned, ends = (["    x, xdot = -x, -xdot"], (f, g)) if above else ([], (g, f))
-    return "\n".join(["def acceleration(t, x, xdot, p):", *turned, *lines, f"    return s{ends[0]} - s{ends[1]}", ""])
+    f, g = source(osc.force()), source(osc.forcing())
+    # from the upper wall x and x' change their signs, and so does the acceleration
+    turned, result = ("    x, xdot = -x, -xdot\n", f"{f} - ({g})") if above else ("", f"{g} - ({f})")
+    return f"def acceleration(t, x, xdot, p):\n{turned}    return {result}\n"
 
 
 def rebound(osc: Oscillator) -> Callable[[float], float]:
@@ -73,32 +69,57 @@ def rebound(osc: Oscillator) -> Callable[[float], float]:
     >>> rebound(Oscillator("x", "cos(t)", 0, "-v/2"))(-0.75)
     0.375
     """
-    lines, (result,) = _written([osc.rho()])
-    space: dict[str, Any] = {name: getattr(math, name) for name in FUNCTIONS}
-    source = "\n".join(["def rho(v):", *lines, f"    return s{result}", ""])
-    exec(compile(source, "<rebound>", "exec"), space)
-    return space["rho"]  # type: ignore[no-any-return]
+    return python_function("rho", f"def rho(v):\n    return {source(osc.rho())}\n")
 
 
-def _written(trees: Sequence[Expression]) -> tuple[list[str], tuple[int, ...]]:
-    """Assignments s0 = ..., s1 = ..., and the places of the results."""
-    program = Program.of(trees)
-    lines = [f"    s{place} = {_operation(kind, parts)}" for place, (kind, parts) in enumerate(program.operations)]
-    return lines, program.results
+def python_function(name: str, text: str) -> Callable[..., float]:
+    """The function that a Python text defines; the names of `FUNCTIONS` in it are those of `math`."""
+    space: dict[str, Any] = {function: getattr(math, function) for function in FUNCTIONS}
+    exec(compile(text, f"<{name}>", "exec"), space)
+    return space[name]  # type: ignore[no-any-return]
 
 
-def _operation(kind: str, parts: tuple[Any, ...]) -> str:
-    if kind in ("+", "*"):
-        return f"s{parts[0]} {kind} s{parts[1]}"
-    if kind == "name":
-        return str(parts[0])
-    if kind == "number":
-        return repr(math.pi if parts[0] is None else float(parts[0]))
-    return _power(f"s{parts[0]}", parts[1]) if kind == "power" else f"{kind}(s{parts[0]})"
+def source(tree: Expression) -> str:
+    """The Python text of an expression in doubles, with the functions of `math`.
+
+    Examples
+    --------
+    >>> from singimpact.algebra.parsing import parse
+    >>> source(parse("x**(-1/2) + tanh(2*x)/3", ["x"]))
+    '(x) ** -0.5 + (0.3333333333333333) * (tanh((2.0) * (x)))'
+    """
+    written: str = evaluate(tree, {name: _Text(name) for name in names_in(tree)}, _Texts()).text
+    return written
 
 
-def _power(base: str, exponent: Fraction) -> str:
-    if exponent.denominator > 1:
-        return f"{base} ** {float(exponent)!r}"
-    product = " * ".join([base] * abs(exponent.numerator)) if abs(exponent.numerator) <= 8 else f"{base} ** {exponent}"
-    return f"1 / ({product})" if exponent < 0 and abs(exponent.numerator) <= 8 else product
+@dataclass(frozen=True)
+class _Text:
+    """A sum as Python text; its terms need no brackets."""
+
+    text: str
+
+    def __add__(self, other: "_Text") -> "_Text":
+        return _Text(f"{self.text} + {other.text}")
+
+    def __mul__(self, other: "_Text") -> "_Text":
+        return _Text(f"({self.text}) * ({other.text})")
+
+
+class _Texts:
+    """The ring of such texts."""
+
+    def rational(self, value: Fraction) -> _Text:
+        return _Text(repr(float(value)))
+
+    def pi(self) -> _Text:
+        return _Text(repr(math.pi))
+
+    def power(self, base: _Text, exponent: Fraction) -> _Text:
+        whole = exponent.denominator == 1
+        return _Text(f"({base.text}) ** {exponent if whole else float(exponent)}")
+
+    def call(self, function: str, argument: _Text) -> _Text:
+        return _Text(f"{function}({argument.text})")
+
+    def root(self, tree: Expression) -> _Text:
+        raise TypeError(f"the root {tree} has no text in doubles")

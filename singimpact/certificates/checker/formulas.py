@@ -1,7 +1,5 @@
 """Texts as functions of balls, of complex balls, of series of balls, and of numbers with derivatives."""
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Sequence
 from fractions import Fraction
@@ -63,12 +61,12 @@ class Dual:
     def __init__(self, value: Any, slopes: Sequence[Any]) -> None:
         self.value, self.slopes = value, list(slopes)
 
-    def __add__(self, other: Any) -> Dual:
+    def __add__(self, other: Any) -> "Dual":
         if isinstance(other, Dual):
             return Dual(self.value + other.value, map(sum, zip(self.slopes, other.slopes, strict=True)))  # type: ignore[arg-type]
         return Dual(self.value + other, self.slopes)
 
-    def __mul__(self, other: Any) -> Dual:
+    def __mul__(self, other: Any) -> "Dual":
         if not isinstance(other, Dual):
             return Dual(self.value * other, [each * other for each in self.slopes])
         pairs = zip(self.slopes, other.slopes, strict=True)

@@ -17,8 +17,6 @@ step (x - c)/s takes the place of x - c, so that launches from the wall are deci
 for the distance from that too; launches from it are those of the model with x -> -x.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
@@ -44,11 +42,11 @@ class Model:
         if not self._law.names() - {"pi", *FUNCTIONS, *parameters}:
             need("restitution", 0 <= self._law() <= 1, "the restitution is not shown to be in [0, 1]")
 
-    def at(self, value: Any) -> Model:
+    def at(self, value: Any) -> "Model":
         """The model with another number."""
         return Model(self.content, self.over, value) if self.over else self
 
-    def from_wall(self, wall: str | None) -> Model:
+    def from_wall(self, wall: str | None) -> "Model":
         """The model whose lower wall is a wall of this one: with x -> -x for the upper one."""
         return Model(mirrored(self.content), self.over, self.value) if wall == "upper" else self
 

@@ -9,6 +9,7 @@ speed is int (e1 - u)|A|/(e1 - e) >= |A(e)| (e1 - e)/2.  So chatter completes be
 that is launched after tau_*, as long as that is within the interval on which |A| increases.
 """
 
+from collections.abc import Callable
 from fractions import Fraction
 from itertools import pairwise
 from typing import Any, NamedTuple
@@ -59,24 +60,16 @@ def _one(k: int) -> int:  # noqa: ARG001
     return 1
 
 
-def rising_after(o: Gravity, reach: Any) -> bool:
-    """Whether |A| increases on (0, reach]."""
-    return _positive(lambda s: sum_after(o, s, lambda k: k), reach)
-
-
-def rising_before(o: Gravity, reach: Any) -> bool:
-    """Whether |A(-x)| increases on (0, reach]."""
-    return _positive(lambda s: sum_after(o, -s, lambda k: k), reach)
-
-
-def _positive(function: Any, reach: Any) -> bool:
+def positive(o: Gravity, reach: Any, weight: Callable[[int], int], sign: int = 1) -> bool:
+    """Whether `sum_after` is positive on (0, reach], or for sign = -1 on [-reach, 0): with the weight k, |A| rises."""
     steps = [reach * i / PIECES for i in range(PIECES + 1)]
-    return all(function(between(a, b)) > 0 for a, b in pairwise(steps))
+    pieces = [between(a, b) for a, b in pairwise(steps)]
+    return all(sum_after(o, piece if sign > 0 else -piece, weight) > 0 for piece in pieces)
 
 
 def lost_contact(o: Gravity, numbers: LinearNumbers, near: Fraction, time: Fraction) -> Lost | None:
     """Proof that a_c > 0 up to a time after tau_*: to s = near by the series, then by balls; None if not decided."""
-    if not _positive(lambda s: sum_after(o, s, _one), rational(near)):
+    if not positive(o, rational(near), _one):
         return None
     todo = [(arb(time_of(numbers.square, rational(near)).lower()), rational(time), 0)]
     while todo:
@@ -107,25 +100,22 @@ def settled(o: Gravity, launch: Fraction, r: Any, most: Fraction) -> Settled | N
     o : gravity with a reach of at least most and launch. r : an upper bound. most : s after tau_* at most.
     """
     s0 = rational(launch)
-    if o.j != 2 or not rising_before(o, s0):
+    if o.j != 2 or not positive(o, s0, int, -1):
         return None
     best: Settled | None = None
     for end in (most * share for share in ENDS):
-        if not rising_after(o, rational(end)):
+        if not positive(o, rational(end), int):
             continue
         for first in (short(rational(end * share)) for share in FIRSTS):
-            speed = rounded_down(passing_speed(o, s0, rational(first)))
+            passing = passing_speed(o, s0, rational(first))
+            # a decimal of four digits below the ball
+            speed = Fraction(f"{0.999 * float(passing.lower()):.4g}") if passing > 0 else Fraction(0)
             if speed <= 0 or (best is not None and speed <= best.speed):
                 break
             if completes(o, s0, r, rational(first), rational(end)):
                 best = Settled(launch, speed, first, end)
                 break
     return best
-
-
-def rounded_down(value: Any) -> Fraction:
-    """A decimal of four digits below a ball; 0 where there is none above 0."""
-    return Fraction(f"{0.999 * float(value.lower()):.4g}") if value > 0 else Fraction(0)
 
 
 def passing_speed(o: Gravity, s0: Any, first: Any) -> Any:

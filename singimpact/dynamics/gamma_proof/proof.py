@@ -207,7 +207,10 @@ def certified_gamma(
         for s0 in _reaches(wanted, osc, zero):
             try:
                 relation = flights_before(osc, zero, s0)
-                _require_pressed(relation)
+                steps = [relation.s0 * i / PIECES for i in range(PIECES + 1)]
+                # U^(S, 1) is half of |A|/S^j
+                if not all(relation.hats(between(a, b), arb(1)).U > 0 for a, b in pairwise(steps)):
+                    raise Undecided("a_c is not shown to be negative on all of the interval")
                 boxes = _covered(relation, ends)
             except (Undecided, InputError) as reason:
                 tried.append(f"S <= {s0}: {reason}")
@@ -300,13 +303,6 @@ def _reaches(wanted: Fraction | None, osc: Oscillator, zero: ContactZero) -> Ite
     )
     unit = 1 / Fraction(fastest).limit_denominator(64) if fastest > 1 / 32 else Fraction(1 / fastest)
     return (unit * share for share in REACHES)
-
-
-def _require_pressed(relation: Flights) -> None:
-    """Refuse a reach on which a_c < 0 is not shown: U^(S, 1) is half of |A|/S^j."""
-    steps = [relation.s0 * i / PIECES for i in range(PIECES + 1)]
-    if not all(relation.hats(between(a, b), arb(1)).U > 0 for a, b in pairwise(steps)):
-        raise Undecided("a_c is not shown to be negative on all of the interval")
 
 
 def _covered(relation: Flights, ends: _Ends) -> tuple[BoxProof, ...]:

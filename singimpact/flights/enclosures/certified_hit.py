@@ -3,8 +3,6 @@
 `first_hit` follows a flight in balls of one precision to its hit, `certified_hit` raises the precision.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -244,23 +242,20 @@ def _phase(osc: Oscillator, tau: Expression, bits: int, names: tuple[str, ...]) 
     """
     plain = _ball(tau, bits)
     size = abs(float(plain.mid()))
-    if osc.period is None or not size > 64 or _period_moves(osc, names):
+    if osc.period is None or not size > 64:
+        return plain
+    period = period_over(osc, names)
+    if period is None or names_in(period).intersection(names):
         return plain
     # the fraction of tau/period has `digits` digits only if the number of whole periods times the period has them
     more = bits + ENCLOSURE.guard + (int(abs(plain).upper().man_exp()[1]) + 64 if size > 1e15 else 64)
     with balls_at(more + max(int(plain.mid().man_exp()[0]).bit_length(), 0)):
-        exact, period = _ball(tau, more), _ball(osc.period, more)
-        turns = flint.arb((exact / period).mid()).floor().unique_fmpz()
-        return exact - period * turns
+        exact, length = _ball(tau, more), _ball(osc.period, more)
+        turns = flint.arb((exact / length).mid()).floor().unique_fmpz()
+        return exact - length * turns
 
 
-def _period_moves(osc: Oscillator, names: tuple[str, ...]) -> bool:
-    """Whether the period depends, or may depend, on some numbers."""
-    period = period_over(osc, names)
-    return period is None or bool(names_in(period).intersection(names))
-
-
-def _impact(osc: Oscillator, launch: Launch, hit: BallHit, bits: int) -> ProvedImpact:
+def _impact(osc: Oscillator, launch: Launch, hit: "BallHit", bits: int) -> ProvedImpact:
     """The state after a hit, and D G."""
     names = launch.names
     above = osc.upper is not None and bool(hit.velocity > 0)
@@ -354,23 +349,19 @@ def first_hit(motion: Motion, horizon: Any, steps: int, gap: Any = None) -> Ball
                 after = float((motion.time + graze.at).mid())
                 wall = "x - c" if gap is None else "the distance from a wall"
                 raise Refused(f"{wall} and x' both vanish {after:.6g} after the launch, as far as balls tell") from None
+        arrival = None
         if over is not None:
             if root is not None and not over < root:
                 raise Refused("the hits of both walls are not told apart")
-            time, velocity, derivatives = motion.at_hit(over, slope(over), slope(over), gap)
-            if time > horizon:
-                raise NoHit(f"no hit comes before {float(horizon.mid()):.6g}")
-            return BallHit(time, velocity, derivatives, count)
-        if root is not None:
-            rate = inner[1](root)
-            velocity = slope(root)
+            arrival = motion.at_hit(over, slope(over), slope(over), gap)
+        elif root is not None:
+            rate, velocity = inner[1](root), slope(root)
             if first:
                 velocity = velocity.intersection(root**motion.removed * rate)
-            time, velocity, derivatives = motion.at_hit(root, velocity, rate)
-            if time > horizon:
-                raise NoHit(f"no hit comes before {float(horizon.mid()):.6g}")
-            return BallHit(time, velocity, derivatives, count)
-        if motion.time + shorter > horizon:
+            arrival = motion.at_hit(root, velocity, rate)
+        if (motion.time + shorter if arrival is None else arrival[0]) > horizon:
             raise NoHit(f"no hit comes before {float(horizon.mid()):.6g}")
+        if arrival is not None:
+            return BallHit(*arrival, count)
         motion.advance(shorter)
     raise TooLong(f"no hit comes before {float(motion.time.mid()):.6g}, and {steps} steps in balls do not go further")

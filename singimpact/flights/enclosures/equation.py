@@ -5,8 +5,6 @@
 The clearance is inside f, so that z starts from 0 exactly and no digits cancel next to the wall.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
@@ -106,7 +104,7 @@ def programs_of(osc: Oscillator, names: tuple[str, ...]) -> Programs:
 
 
 @lru_cache(maxsize=32)
-def equation_of(osc: Oscillator) -> Equation:
+def equation_of(osc: Oscillator) -> "Equation":
     """The equation of a model none of whose numbers is a ball; kept, with what is prepared for each precision."""
     return Equation(programs_of(osc, ()), {})
 

@@ -331,7 +331,10 @@ def _bounded(
             grown = (B * length + A * length**2 / 2).exp() / n
             bound = upper(defects[0] * power * grown)
             if bound * length**n * (1 + length) < slack:
-                second, mixed = _second_derivatives(others)
+                # |f_xx| + 2 |f_xv| + |f_vv|, and |f_px| + |f_pv| of t and each name
+                sizes = [upper(flint.arb(other)) for other in others]
+                second = sizes[0] + 2 * sizes[1] + sizes[2]
+                mixed = [sizes[k] + sizes[k + 1] for k in range(3, len(sizes), 2)]
                 bends = [
                     _bend(P, totals, second, mixed, drive, bound, length)
                     for P, totals, drive in zip(psi, sums[1:], drives, strict=True)
@@ -341,12 +344,6 @@ def _bounded(
                     return Step(X, bound, psi, bounds, length, R)
         length = flint.arb(float(length) / 2)
     raise Refused("no step on which the bounds hold")
-
-
-def _second_derivatives(parts: list[Any]) -> tuple[Any, list[Any]]:
-    """|f_xx| + 2 |f_xv| + |f_vv|, and |f_px| + |f_pv| of t and each name."""
-    sizes = [upper(flint.arb(part)) for part in parts]
-    return sizes[0] + 2 * sizes[1] + sizes[2], [sizes[k] + sizes[k + 1] for k in range(3, len(sizes), 2)]
 
 
 def _bend(

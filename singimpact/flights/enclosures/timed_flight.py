@@ -3,7 +3,6 @@
 z = x - c,   z'   at a time T after the launch,   with their derivatives by tau, v, and numbers of the model.
 """
 
-from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil
 from typing import Any, NamedTuple
@@ -16,22 +15,8 @@ from singimpact.flights.enclosures.motion import CarriedMotion, Pair
 from singimpact.flights.enclosures.tube import NearGraze, RootAtEnd, Tube, below, centre, divided, first_root
 from singimpact.oscillator.model import Oscillator
 
-
-@dataclass(frozen=True)
-class TimedSettings:
-    """Settings of the pieces of a flight.
-
-    Parameters
-    ----------
-    near : of the time that is left, a step that would end beyond this part of it goes half of the way.
-    halvings : of the last piece, on which z'' > 0 is shown.
-    """
-
-    near: float = 0.8
-    halvings: int = 30
-
-
-TIMED = TimedSettings()
+NEAR = 0.8  # of the time that is left: a step that would end beyond this part of it goes half of the way
+HALVINGS = 30  # of the last piece, on which z'' > 0 is shown
 
 
 class Arrival(NamedTuple):
@@ -134,7 +119,7 @@ def touches_first(
 def _touches_in_step(motion: CarriedMotion, inner: tuple[Tube, Tube], left: Any, crosses: bool, across: bool) -> None:
     """Show that the distance from the wall is positive in the step of the touching point."""
     last, side = centre(left), -1 if across else 1
-    for _ in range(TIMED.halvings):
+    for _ in range(HALVINGS):
         before = centre(left - last)
         during = before.union(left)
         if side * motion.members[1](during) < 0 if crosses else side * _acceleration(motion, during) > 0:
@@ -185,7 +170,7 @@ def _reaches(length: Any, left: Any) -> bool:
 
 def _piece(length: Any, left: Any) -> Any:
     """The length of this step: not so near the time that the height there is rounding."""
-    return length if length < left * TIMED.near else centre(left / 2)
+    return length if length < left * NEAR else centre(left / 2)
 
 
 def _above(motion: CarriedMotion, inner: tuple[Tube, Tube], length: Any, crosses: bool) -> None:

@@ -5,8 +5,6 @@ rows of one array, `lane[ROW + k]`: the compiler then sees that rows do not over
 constant too large to be unrolled, and sum integers: both keep them vectors.
 """
 
-from __future__ import annotations
-
 from math import inf
 from typing import Any
 

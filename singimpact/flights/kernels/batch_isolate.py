@@ -6,8 +6,6 @@
 on the Bernstein coefficients of p, p', p''.
 """
 
-from __future__ import annotations
-
 from math import inf
 
 from singimpact.flights.kernels.state import (

@@ -4,8 +4,6 @@ One step of Halley's method from the root of the quintic leaves an error of 1e-9
 over; the second step then is exact to rounding.
 """
 
-from __future__ import annotations
-
 from singimpact.flights.kernels.state import (
     BATCH_ORDER,
     E0,

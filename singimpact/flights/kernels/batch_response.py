@@ -1,7 +1,5 @@
 """Derivatives, condition numbers and errors of a batch of hits: `linear.response` and `hits.linear_hit`, abreast."""
 
-from __future__ import annotations
-
 from math import exp, inf
 
 from singimpact.flights.kernels.double_double import product_twice

@@ -4,8 +4,6 @@ Every flight leaves a row, so that its rounding is carried to the end by D G aft
 would have to be inverted, and lose all digits after a hundred impacts.
 """
 
-from __future__ import annotations
-
 from math import inf, log, nan
 from typing import Any
 

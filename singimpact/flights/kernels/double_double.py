@@ -4,8 +4,6 @@ The products split a double into halves of 26 bits (Dekker), so that no fused op
 gives the same bits.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 

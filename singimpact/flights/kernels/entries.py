@@ -3,8 +3,6 @@
 `sizes[KIND]` is the kind of work. The entries that most sessions need are compiled first.
 """
 
-from __future__ import annotations
-
 from math import inf, nan
 from typing import Any
 

@@ -4,8 +4,6 @@ Next to gamma each halving takes the longest flights: where the series is known,
 are left out.
 """
 
-from __future__ import annotations
-
 from math import nan
 from typing import Any
 

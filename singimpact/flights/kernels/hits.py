@@ -3,8 +3,6 @@
 A hit is a row of numbers, columns FLIGHT_TIME and following of `state`.
 """
 
-from __future__ import annotations
-
 from math import inf, nan
 from typing import Any
 

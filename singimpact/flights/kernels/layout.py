@@ -4,8 +4,6 @@ Compiled entries get two addresses and build the named tuples over them; Python 
 functions.
 """
 
-from __future__ import annotations
-
 from math import inf
 from typing import Any
 

@@ -6,8 +6,6 @@ with a, b the roots of s^2 + d s + k and D the divided differences of s -> e^{s 
 resonance, critical damping and k = 0 are ordinary points.  launch = cos theta_j, sin theta_j of every wave.
 """
 
-from __future__ import annotations
-
 from cmath import sqrt as complex_sqrt
 from math import cos, exp, expm1, inf, sin
 from typing import Any

@@ -1,7 +1,5 @@
 """Impact after impact in one loop: the launch is made from the phase, the rebound from rho."""
 
-from __future__ import annotations
-
 from math import nan
 from typing import Any
 

@@ -4,8 +4,6 @@
 here in their places; `recurrence_entry` is what stands at the address.
 """
 
-from __future__ import annotations
-
 from math import nan
 from typing import Any
 

@@ -6,8 +6,6 @@ root has been
 isolated before; here it is only placed.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from singimpact.flights.kernels.double_double import divided, product_twice, sum_twice

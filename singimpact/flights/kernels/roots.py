@@ -5,8 +5,6 @@ whose first root cannot overshoot; it converges quadratically to the *first* roo
 O(log 1/depth) steps.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 

@@ -3,8 +3,6 @@
 In compiled code the fields are doubles and arrays; on numbers of mpmath and balls the arrays are lists.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

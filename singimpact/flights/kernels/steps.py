@@ -3,8 +3,6 @@
 `disc` is emitted with the recurrence of f and g; `flights.bind` puts it in the place of the one here.
 """
 
-from __future__ import annotations
-
 from math import exp, log
 from typing import Any
 

@@ -5,8 +5,6 @@
 is linear in the launch; the columns are the same for all launches of a model, and no error grows along a flight.
 """
 
-from __future__ import annotations
-
 from cmath import sqrt as complex_sqrt
 from typing import Any
 

@@ -5,8 +5,6 @@ interpolation error |x^(6)| h^6/46080.  Else x'' keeping its sign decides, or a 
 to `taylor_flight`.
 """
 
-from __future__ import annotations
-
 from math import cos, inf, sin
 from typing import Any
 

@@ -11,8 +11,6 @@ horizon, for `flights.no_return`: time, x', x - c, its bound.  21 : the steps ar
 singularity, with the part of f and g that is singular in place of the bound; 23 : out of the range of numbers.
 """
 
-from __future__ import annotations
-
 from math import inf
 from typing import Any
 

@@ -6,8 +6,6 @@ are carried from step to step by one matrix.  `variations`, `rounding` and `disc
 recurrence of f and g; `flights.bind` puts them in the place of those here, which are of x'' = 0.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from singimpact.flights.kernels.linear import step_size

@@ -4,8 +4,6 @@ A launch time comes as two doubles, t + t_low.  Sine and cosine are polynomials 
 remainder: the same bits with and without the compiler, and several times faster than a library's.
 """
 
-from __future__ import annotations
-
 from math import cos, sin
 from typing import Any
 

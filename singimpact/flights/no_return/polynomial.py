@@ -145,14 +145,8 @@ def extremes_of_forcing(osc: Oscillator) -> tuple[Any, Any] | None:
 # followed without impact to the time at which the bounds are taken.
 
 
-@dataclass(frozen=True)
-class MarginSettings:
-    """`part` of the size of all terms must be left over: 2^20 roundings, far above what the few operations here do."""
-
-    part: float = 2.0**-32
-
-
-MARGIN = MarginSettings()
+# The part of the size of all terms that must be left over: 2^20 roundings, far above what the few operations here do
+MARGIN = 2.0**-32
 
 
 def never_returns(osc: Oscillator, form: LinearForm, tau: Array, time: Array, z: Array, u: Array) -> Array:
@@ -185,7 +179,7 @@ def never_returns(osc: Oscillator, form: LinearForm, tau: Array, time: Array, z:
         low, size = _lowest(
             sign_of(form.stiffness), sign_of(form.damping), stiffness, damping, h, z - position, u - speed
         )
-        return np.asarray(low - bound > MARGIN.part * (size + bound + np.abs(z)))
+        return np.asarray(low - bound > MARGIN * (size + bound + np.abs(z)))
 
 
 def _lowest(k_sign: int, d_sign: int, k: float, d: float, h: float, z: Array, u: Array) -> tuple[Array, Array]:

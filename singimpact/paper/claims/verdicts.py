@@ -1,26 +1,21 @@
 """The verdicts of a run: as a table for any width, as the list of misprints, and as data."""
 
-from __future__ import annotations
-
 import json
 import sys
 import textwrap
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import zip_longest
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, overload
+from typing import Any, NamedTuple, overload
 
 from singimpact.certificates.claims_checker import SCHEMA, digest_of, file_of
 from singimpact.inputs import checked_keywords
 from singimpact.notebook import table
-from singimpact.paper.claims.claim import MODULO
+from singimpact.paper.claims.claim import MODULO, Claim, Verdict
+from singimpact.paper.claims.index import Entry
 from singimpact.store import folder, write_text
-
-if TYPE_CHECKING:
-    from singimpact.paper.claims.claim import Claim, Verdict
-    from singimpact.paper.claims.index import Entry
 
 ERROR = "error"
 WRITTEN = (  # of a verdict, in the file of its certificates: no seconds, which differ from run to run
@@ -153,7 +148,7 @@ def verify(
     on_start: Callable[[Entry | Claim, int, int], None] | None = None,
     *,
     beyond: bool = False,
-) -> VerdictTable:
+) -> "VerdictTable":
     """Derive, prove and cross-check claims of the paper; the twin of the command `singimpact verify`.
 
     Parameters
@@ -204,9 +199,6 @@ class VerdictTable(Sequence["Verdict"]):
 
     def __len__(self) -> int:
         return len(self.verdicts)
-
-    def __iter__(self) -> Iterator[Verdict]:
-        return iter(self.verdicts)
 
     @property
     def exit_code(self) -> int:
@@ -307,6 +299,8 @@ class VerdictTable(Sequence["Verdict"]):
         ----------
         width : columns; longer lines end in an ellipsis. None leaves them as long as they are.
         """
+        from singimpact.documents.rendering import unicode_line
+
         wrong = [f"  {verdict.id}  {verdict.evidence}" for verdict in self if verdict.kind == ERROR]
         lines = [self._summary(), self._rests_on(), *(["", "In error:", *wrong] if wrong else [])]
         misprints = [verdict for verdict in self if verdict.kind == CORRECTED]
@@ -315,7 +309,10 @@ class VerdictTable(Sequence["Verdict"]):
             lines += [
                 "",
                 f"Misprinted, {len(misprints)} (`singimpact errata` gives the reasons):",
-                *(f"  {verdict.id:{ids}}  {_correction(verdict)}" for verdict in misprints),
+                *(
+                    f"  {v.id:{ids}}  for {unicode_line(v.printed)}, read {unicode_line(v.corrected or '')}"
+                    for v in misprints
+                ),
             ]
         return "\n".join(line if width is None or len(line) <= width else f"{line[: width - 1]}…" for line in lines)
 
@@ -346,13 +343,6 @@ class VerdictTable(Sequence["Verdict"]):
         if not found:
             return ""
         return "\n\n".join([f"Misprinted: {len(found)}", *(_misprint(verdict, width) for verdict in found)])
-
-
-def _correction(verdict: Verdict) -> str:
-    """A misprint on one line: for what is printed, read what holds."""
-    from singimpact.documents.rendering import unicode_line
-
-    return f"for {unicode_line(verdict.printed)}, read {unicode_line(verdict.corrected or '')}"
 
 
 def _misprint(verdict: Verdict, width: int | None) -> str:

@@ -1,24 +1,19 @@
 """The errata: each statement that fails as printed, with what holds instead, why, the witness, and what survives."""
 
-from __future__ import annotations
-
 import re
 import tomllib
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, overload
+from typing import Any, overload
 
 from singimpact.documents.rendering import environment, wrapping
 from singimpact.inputs import checked_keywords
-from singimpact.paper.claims.index import places_in_paper
+from singimpact.paper.claims.claim import Claim, Verdict
+from singimpact.paper.claims.index import Entry, places_in_paper
 from singimpact.paper.sections.stored_sections import kept_legend
-
-if TYPE_CHECKING:
-    from singimpact.paper.claims.claim import Claim, Verdict
-    from singimpact.paper.claims.index import Entry
 
 # Where a claim stands in the paper: page, equation, theorem and line, for a reader with the paper beside him.
 
@@ -239,9 +234,6 @@ class Errata(Sequence[Erratum]):
 
     def __len__(self) -> int:
         return len(self.entries)
-
-    def __iter__(self) -> Iterator[Erratum]:
-        return iter(self.entries)
 
     def __repr__(self) -> str:
         return self.text()

@@ -189,11 +189,6 @@ def with_Q(expression: Any) -> Any:
     return shown
 
 
-def with_Q_in(matrix: Any) -> Any:
-    """A matrix with Q for Q_r(1, m) in every entry that has a root."""
-    return matrix.applyfunc(lambda entry: with_Q(entry) if entry.has(fold.Q_at_one()) else entry)
-
-
 def _blow_up() -> dict[str, object]:
     """The formulas from h to the multipliers of its fixed points."""
     rate, image = fold.h_blown_up()
@@ -209,7 +204,8 @@ def _blow_up() -> dict[str, object]:
         "N_r": with_Q(fold.N_r()),
         "N_r_collected": with_Q(fold.N_r_collected()),
         "N_r_at_fixed_points": fold.N_r_at_fixed_points(),
-        "Dh": with_Q_in(fold.Dh_blown_up()),
+        # Q for Q_r(1, m) in every entry that has a root
+        "Dh": fold.Dh_blown_up().applyfunc(lambda entry: with_Q(entry) if entry.has(fold.Q_at_one()) else entry),
         "gamma_leading": fold.gamma_leading(),
     }
 

@@ -1,5 +1,6 @@
 """The impact map of the package near a tangency with a' > 0: jumps, sides of gamma, eigenvalues, lift-off."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
@@ -142,20 +143,24 @@ def eigenvalues() -> tuple[EigenvalueCase, ...]:
 
 
 def _limiting_eigenvalue(point: Place) -> float:
-    points = [(sigma, _larger_eigenvalue(point, sigma, v)) for sigma, v in _on_gamma(point)[-4:]]
-    return float(true_orbits.extrapolated(points))
+    def image(sigma: float, v: float) -> tuple[float, float]:
+        step = point.model.impact_map(point.tau + sigma, v)
+        return float(step.tau), float(step.v)
+
+    return _extrapolated_eigenvalue(image, _on_gamma(point)[-4:], 1e-5)
 
 
-def _larger_eigenvalue(place: Place, sigma: float, v: float) -> float:
-    """By central differences, steps in proportion to sigma and v."""
-    step = 1e-5
-    columns = []
-    for d_tau, d_v in ((step * abs(sigma), 0.0), (0.0, step * v)):
-        ahead = place.model.impact_map(place.tau + sigma + d_tau, v + d_v)
-        behind = place.model.impact_map(place.tau + sigma - d_tau, v - d_v)
-        width = 2 * (d_tau + d_v)
-        columns.append([float(ahead.tau - behind.tau) / width, float(ahead.v - behind.v) / width])
-    return float(max(np.linalg.eigvals(np.array(columns).T).real))
+def _extrapolated_eigenvalue(image: Callable[[Any, Any], Any], points: list[tuple[Any, Any]], step: Any) -> float:
+    """The larger eigenvalue of a map at points, by central differences in proportion to sigma and v, at sigma = 0."""
+    values = []
+    for sigma, v in points:
+        columns = []
+        for d_sigma, d_v in ((step * abs(sigma), 0), (0, step * v)):
+            ends = image(sigma + d_sigma, v + d_v), image(sigma - d_sigma, v - d_v)
+            columns.append([(ahead - behind) / (2 * (d_sigma + d_v)) for ahead, behind in zip(*ends, strict=True)])
+        (a, c), (b, d) = columns
+        values.append((sigma, (a + d + ((a - d) ** 2 + 4 * b * c) ** 0.5) / 2))
+    return float(true_orbits.extrapolated(values))
 
 
 LIFT_OFF = {
@@ -193,24 +198,13 @@ def eigenvalue() -> tuple[float, float]:
     start = context.mpf(10) ** -25
     target = context.mpf(10) ** -40
     orbit = true_orbits.backwards(flow, r, -start, start**3 * 0.2, rate, 3e-2, target)
-    points = []
-    for sigma, v in orbit[-5:]:
-        h = context.mpf(10) ** -12
-        columns = []
-        for d_sigma, d_v in ((h * abs(sigma), 0), (0, h * v)):
-            ends = []
-            for sign in (1, -1):
-                s, w = sigma + sign * d_sigma, v + sign * d_v
-                t, slope = true_orbits.return_time(flow, s, w, s * (rate - 1), target)
-                ends.append((s + t, -r * slope))
-            columns.append([(ends[0][n] - ends[1][n]) / (2 * (d_sigma + d_v)) for n in (0, 1)])
-        trace, determinant = (
-            columns[0][0] + columns[1][1],
-            columns[0][0] * columns[1][1] - columns[0][1] * columns[1][0],
-        )
-        points.append((sigma, (trace + context.sqrt(trace**2 - 4 * determinant)) / 2))
+
+    def image(s: Any, v: Any) -> tuple[Any, Any]:
+        t, slope = true_orbits.return_time(flow, s, v, s * (rate - 1), target)
+        return s + t, -r * slope
+
     expected = float(eigenvalues_on_gamma(2)[0].subs(lambda_, sympy.Float(rate, 30)))
-    return expected, float(true_orbits.extrapolated(points))
+    return expected, _extrapolated_eigenvalue(image, orbit[-5:], context.mpf(10) ** -12)
 
 
 def fates() -> tuple[str, bool]:
@@ -284,6 +278,8 @@ class Leaf:
 @lru_cache(maxsize=1)
 def leaves() -> tuple[Leaf, ...]:
     """Launch from rest at tau_* + end, end < 0, where a > 0; chatter comes to rest at the foot of the leaf."""
-    starts = [(point, end) for point in foliated() for end in (-0.04, -0.02, -0.01)]
-    rests = [true_orbits.resting_time(point.model, point.tau + end, 0.0, 400, 1e-13) for point, end in starts]
-    return tuple(Leaf(point.name, rest - point.tau, end) for (point, end), rest in zip(starts, rests, strict=True))
+    ends, cases = np.array([-0.04, -0.02, -0.01]), []
+    for point in foliated():
+        feet = true_orbits.resting_times(point.model, point.tau + ends, np.zeros(3), 400, 1e-13) - point.tau
+        cases += [Leaf(point.name, *pair) for pair in zip(feet.tolist(), ends.tolist(), strict=True)]
+    return tuple(cases)

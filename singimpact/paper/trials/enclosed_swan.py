@@ -9,8 +9,6 @@ and lands with T p'(T).  For w > 0 the cubic has a negative root and so two posi
 is the first.  An interval of h is carried as an orbit from its middle and a ball for the derivative of all orbits by h.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from enum import Enum
 from fractions import Fraction
@@ -127,7 +125,7 @@ class _Orbit:
     dw: Any
 
     @staticmethod
-    def at_rest(r: arb, h: arb) -> _Orbit | None:
+    def at_rest(r: arb, h: arb) -> "_Orbit | None":
         """After the first impact: T is the smaller root of 12 + 6h - (4 + 4h) T + h T^2."""
         under = 16 - 16 * h - 8 * h * h
         if not under > 0:
@@ -139,7 +137,7 @@ class _Orbit:
         w = -r * time * time * slope
         return _Orbit(r, h, time - 1, w, rate, -r * (2 * time * rate * slope + time * time * bend))
 
-    def narrowed(self, y: arb, w: arb) -> _Orbit:
+    def narrowed(self, y: arb, w: arb) -> "_Orbit":
         """A state with narrower balls for y and w that also hold all states, by the mean value theorem."""
         return replace(self, y=self.y.intersection(y), w=self.w.intersection(w))
 
@@ -153,7 +151,7 @@ class _Orbit:
         """p'."""
         return (6 * self.h * self.y - 12) * self.y + (8 * self.h * self.y - 8 + 3 * self.h * time) * time
 
-    def after(self) -> _Orbit | None:
+    def after(self) -> "_Orbit | None":
         """After the next impact; None where its time is not enclosed or p' < 0 is not shown."""
         time = self._time()
         if time is None:

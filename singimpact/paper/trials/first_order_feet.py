@@ -4,33 +4,27 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from math import log
-from typing import NamedTuple
 
 import numpy as np
-import sympy
 
 from singimpact.algebra.numbers import as_float
-from singimpact.contact.points import tangency_points
+from singimpact.algebra.rings import DOUBLES
+from singimpact.contact.contact import force_jet
 from singimpact.contact.swans import swan_points_over_clearance
 from singimpact.dynamics.chatter import chatter_limit
 from singimpact.dynamics.orbit import orbit
-from singimpact.impact_oscillator import universal
-from singimpact.oscillator.model import Oscillator
+from singimpact.dynamics.unfolded_swan import swan_configuration
 from singimpact.oscillator.wall_acceleration import acceleration
+from singimpact.paper.trials.true_orbits import System
+from singimpact.paper.trials.universal_orbits import foot
 
 RATES = ("3/10", "1/2", "4/5")
 SIZES = (0.004, 0.002)  # half distances H tried, to leading order in c_0 - c
 REST = 1e-7  # in H: an orbit from rest so far behind A has the same foot to its square, and A itself is rounded
 
 
-class Model(NamedTuple):
-    """An oscillator without its clearance and restitution."""
-
-    name: str
-    f: str
-    g: str
-
-
+Model = System  # without its clearance
+limit_of = foot  # X of the universal negative swan
 MODELS = (
     Model("x'' + x = cos 2t + sin(3t)/5", "x", "cos(2*t) + 0.2*sin(3*t)"),
     Model("x'' + x'/2 + x = cos 2t", "x + 0.5*xdot", "cos(2*t)"),
@@ -60,21 +54,14 @@ class Feet:
 
 
 @cache
-def limit_of(rate: str) -> float:
-    """X of the universal negative swan."""
-    return float(chatter_limit(universal(-1, rate), -1, 0).tau)
-
-
-@cache
 def _swan(model: Model) -> tuple[float, float, float, float]:
     """(c_0, tau_*, |a''|, chi) of its first negative swan point."""
-    osc = Oscillator(model.f, model.g, 0, "1/2")
+    osc = model.over("0", "1/2")
     point = next(each for each in swan_points_over_clearance(osc) if each.kind == "negative")
     c, tau = float(point.clearance), float(point.tau)
-    at = Oscillator(model.f, model.g, repr(c), "1/2")
+    at = model.over(repr(c), "1/2")
     second, third = (float(acceleration(at, np.array([tau]), order=n)[0]) for n in (2, 3))
-    x, xdot = sympy.symbols("x xdot")
-    damping = float(sympy.diff(sympy.sympify(model.f), xdot).subs({x: c, xdot: 0}))
+    damping = float(force_jet(at, 0, 2, DOUBLES).get((0, 1), 0.0))
     return c, tau, abs(second), damping + 2 * third / (3 * second)
 
 
@@ -84,22 +71,13 @@ def measured(model: Model, rate: str, tried: tuple[float, ...] = SIZES) -> Feet:
     c, tau, bend, chi = _swan(model)
     sizes, offsets, limit = [], [], limit_of(rate)
     for size in tried:
-        osc = Oscillator(model.f, model.g, repr(c - bend * size**2 / 2), rate)
-        A, B = _ends(osc, tau)
-        half = (B - A) / 2
-        foot = float(chatter_limit(osc, A + REST * half, 0).tau)
+        osc = model.over(repr(c - bend * size**2 / 2), rate)
+        near = swan_configuration(osc, near=tau)
+        half = (near.B - near.A) / 2
+        rest = float(chatter_limit(osc, near.A + REST * half, 0).tau)
         sizes.append(half)
-        offsets.append((foot - (A + B) / 2) / half - limit)
+        offsets.append((rest - (near.A + near.B) / 2) / half - limit)
     return Feet(chi, limit, tuple(sizes), tuple(offsets))
-
-
-def _ends(osc: Oscillator, tau: float) -> tuple[float, float]:
-    """The tangency points before and after a swan point."""
-    assert osc.period is not None
-    period = as_float(osc.period)
-    places = [float(point.tau) for point in tangency_points(osc)]
-    near = [place - period * round((place - tau) / period) for place in places]
-    return max(place for place in near if place < tau), min(place for place in near if place > tau)
 
 
 # The orbit that is born at a negative swan with a_c < 0 elsewhere: released at A, it hops, chatters and rests.
@@ -148,7 +126,7 @@ def clearance(depth: int) -> str:
 @cache
 def hop(lift: Model, rate: str, depth: int) -> Hop:
     """The orbit from rest between two swans, over three turns."""
-    osc = Oscillator(lift.f, lift.g, clearance(depth), rate)
+    osc = lift.over(clearance(depth), rate)
     assert osc.period is not None
     period = as_float(osc.period)
     run = orbit(osc, FROM[0][0] * period, FROM[0][1], 400)

@@ -7,7 +7,6 @@ given part of h there, for impacts until a side is decided grow like its inverse
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
-from typing import NamedTuple
 
 import numpy as np
 
@@ -15,6 +14,7 @@ from singimpact.algebra.solving import halved
 from singimpact.dynamics.remaining import rest_after
 from singimpact.flights.orbits import orbit_segment
 from singimpact.oscillator.model import Oscillator
+from singimpact.paper.trials.true_orbits import System
 
 POWERS = tuple(Fraction(n, 10) for n in (1, 2, 3, 5))
 FARTHEST = 0.01  # h of the first place; what an oscillator has beyond its leading term is of order h^2 here
@@ -28,20 +28,12 @@ BLOCK = 8192
 SHORT = 1 / 8  # of 1/(j + 1), below the part 3/(3 + (2+q) j) of h that chatter on gamma would last under constant a_c
 
 
-class Start(NamedTuple):
-    """An oscillator whose a_c vanishes at tau = 0 to order j, with |a_j|/j! = 1."""
-
-    name: str
-    f: str
-    g: str
-    order: int
-
-
+Start = System  # its a_c vanishes at tau = 0 to order j, with |a_j|/j! = 1
 STARTS = (
-    Start("x'' = t", "0", "t", 1),
-    Start("x'' + x = sin t, c = 0", "x", "sin(t)", 1),
-    Start("x'' = -t^2", "0", "-t**2", 2),
-    Start("x'' + x = (cos 2t - 1)/2, c = 0", "x", "(cos(2*t) - 1)/2", 2),
+    Start("x'' = t", "0", "t", order=1),
+    Start("x'' + x = sin t, c = 0", "x", "sin(t)", order=1),
+    Start("x'' = -t^2", "0", "-t**2", order=2),
+    Start("x'' + x = (cos 2t - 1)/2, c = 0", "x", "(cos(2*t) - 1)/2", order=2),
 )
 
 

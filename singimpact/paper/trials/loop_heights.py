@@ -12,12 +12,11 @@ from typing import NamedTuple
 import numpy as np
 
 from singimpact.algebra.numbers import Array
-from singimpact.dynamics.chatter import chatter_limit
 from singimpact.dynamics.threshold import threshold
 from singimpact.dynamics.unfolded_swan import swan_configuration
-from singimpact.flights.impact_map import impact_map
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration
+from singimpact.paper.trials.true_orbits import System, resting_times
 from singimpact.theory.fixed_points import multipliers
 
 RATES = ("3/10", "1/2", "4/5")
@@ -25,21 +24,14 @@ GENERATIONS = 4
 LINES = (1e-3, 5e-4)  # h
 REST = 1e-8  # half distances behind A from which an orbit at rest is followed: its foot is X to 1e-16
 STEPS = 8  # of the secant method; 5 reach rounding
-FLIGHTS = 400  # before B
+FLIGHTS = 2000  # of an orbit at most, until the rest of its chatter is summed up
+SLOW = 1e-9  # the velocity from which on it is, behind B
 GAMMA_LINE = 0.05  # h at which feet beside gamma are measured
 PHASES = (0.0, 0.25, 0.5, 0.75)  # of ln delta/ln mu
 DEEP = 1e-3  # the distance from gamma there
 
 
-class Swan(NamedTuple):
-    """An oscillator with an unfolded negative swan near t = 0, but for r."""
-
-    name: str
-    f: str
-    g: str
-    clearance: str
-
-
+Swan = System  # with an unfolded negative swan near t = 0
 SWANS = (
     Swan("x'' = 12(1 - t^2), c = 0", "0", "-12*(t**2 - 1)", "0"),
     Swan("x'' + x = cos 2t, c = 19/20", "x", "cos(2*t)", "0.95"),
@@ -109,23 +101,16 @@ class _Setting(NamedTuple):
 
 @cache
 def _setting(swan: Swan, rate: str) -> _Setting:
-    osc = Oscillator(swan.f, swan.g, swan.clearance, rate)
+    osc = swan.over(swan.clearance, rate)
     near = swan_configuration(osc, near=0)
     slope = float(acceleration(osc, np.array([near.A]), order=1)[0])
-    foot = float(chatter_limit(osc, near.A + REST * (near.B - near.A) / 2, 0).tau)
+    (foot,) = _feet(osc, near.B, np.array([near.A + REST * (near.B - near.A) / 2]), np.zeros(1)).tolist()
     return _Setting(osc, near.A, near.B, slope, foot)
 
 
-def _feet(at: _Setting, tau: Array, v: Array) -> Array:
+def _feet(osc: Oscillator, B: float, tau: Array, v: Array) -> Array:
     """Where orbits come to rest behind B."""
-    tau, v = np.array(tau, dtype=float), np.array(v, dtype=float)
-    for _ in range(FLIGHTS):
-        flying = np.flatnonzero(tau < at.B)
-        if not flying.size:
-            break
-        step = impact_map(at.osc, tau[flying], v[flying])
-        tau[flying], v[flying] = step.tau, step.v
-    return np.asarray(chatter_limit(at.osc, tau, v).tau)
+    return resting_times(osc, tau, v, FLIGHTS, SLOW, B)
 
 
 @cache
@@ -137,7 +122,7 @@ def heights(swan: Swan, rate: str) -> Heights:
     reach = line * (at.B - at.A) / 2
 
     def miss(w: Array) -> Array:
-        return _feet(at, at.A - reach, w * at.slope * reach**2) - at.X
+        return _feet(at.osc, at.B, at.A - reach, w * at.slope * reach**2) - at.X
 
     last, now = start, start + 0.1 * line
     before, off = miss(last), miss(now)
@@ -171,5 +156,5 @@ def feet_beside_gamma(swan: Swan, rate: str) -> Feet:
     tau = at.A - GAMMA_LINE * (at.B - at.A) / 2
     edge = float(threshold(at.osc, tau).v)
     distances = [DEEP * mu ** -(period + np.array(PHASES)) for period in range(3)]
-    rows = [_feet(at, np.full(delta.size, tau), edge * (1 + delta)) - at.X for delta in distances]
+    rows = [_feet(at.osc, at.B, np.full(delta.size, tau), edge * (1 + delta)) - at.X for delta in distances]
     return Feet(float(both.lambda_.value), mu, tuple(tuple(row.tolist()) for row in rows))

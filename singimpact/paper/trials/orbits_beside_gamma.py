@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 from functools import cache
 from math import ceil, log
-from typing import NamedTuple
 
 import numpy as np
 
@@ -12,7 +11,7 @@ from singimpact.contact.zero_ahead import next_zero
 from singimpact.dynamics.chatter import chatter_limit
 from singimpact.dynamics.threshold import threshold
 from singimpact.flights.orbits import orbit_segment
-from singimpact.oscillator.model import Oscillator
+from singimpact.paper.trials.true_orbits import System
 from singimpact.theory.fixed_points import multipliers
 
 RATES = ("3/10", "1/2", "4/5")
@@ -21,17 +20,7 @@ APART = 30
 IMPACTS = 400  # flown above gamma
 
 
-class Start(NamedTuple):
-    """An oscillator, the contact order at which gamma ends, and a phase before that place."""
-
-    name: str
-    f: str
-    g: str
-    clearance: str
-    order: int
-    tau: float
-
-
+Start = System  # gamma ends at its contact point
 STARTS = (
     Start("x'' + x = cos 2t, c = 3/10", "x", "cos(2*t)", "0.3", 1, 5.4),
     Start("x'' + x'/5 + x = cos 2.8t + sin(t)/5, c = 0", "x + 0.2*xdot", "cos(2.8*t) + 0.2*sin(t)", "0", 1, 1.4),
@@ -64,7 +53,7 @@ def beside(start: Start, rate: str) -> Beside:
     """Two orbits below gamma and two above it."""
     at = multipliers(start.order, rate, 20)
     lambda_, mu = float(at.lambda_.value), float(at.mu.value)
-    osc = Oscillator(start.f, start.g, start.clearance, rate)
+    osc = start.over(start.clearance, rate)
     end = next_zero(osc, constant("tau", start.tau)).zero
     assert end is not None
     assert end.order == start.order

@@ -180,19 +180,11 @@ def jumps_are_grazes() -> Tried:
     return name, len(touches) >= 5 and max(touches) < 1e-3
 
 
-def _jumps(
-    model: ImpactOscillator, tau: float, coarse: int = 151, fine: int = 10, least: float = 0.3
-) -> list[tuple[float, float]]:
-    """Neighbours between which the flight time jumps, of coarse * fine velocities: looked for where it changes much."""
-    v = np.linspace(0.05, 2.5, coarse)
+def _jumps(model: ImpactOscillator, tau: float, count: int = 1501, least: float = 0.3) -> list[tuple[float, float]]:
+    """Neighbours between which the flight time jumps, of so many velocities."""
+    v = np.linspace(0.05, 2.5, count)
     times = np.asarray(model.impact_map(tau, v).flight_time)
-    jumps = []
-    for at in np.flatnonzero(np.abs(np.diff(times)) > least):
-        between = np.linspace(v[at], v[at + 1], fine + 1)
-        times_between = np.asarray(model.impact_map(tau, between).flight_time)
-        places = np.flatnonzero(np.abs(np.diff(times_between)) > least)
-        jumps += [(float(between[index]), float(between[index + 1])) for index in places]
-    return jumps
+    return [(float(v[at]), float(v[at + 1])) for at in np.flatnonzero(np.abs(np.diff(times)) > least)]
 
 
 def _touch(model: ImpactOscillator, tau: float, low: float, high: float) -> float:

@@ -10,19 +10,21 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
 from itertools import pairwise
-from math import sqrt
-from typing import Any
+from math import inf, sqrt
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from singimpact.algebra.expressions import function_of
-from singimpact.algebra.numbers import as_float, as_fraction
+from singimpact.algebra.numbers import Array, as_float, as_fraction
 from singimpact.algebra.rings import DOUBLES
 from singimpact.algebra.solving import halved
 from singimpact.contact.contact import acceleration, acceleration_jet, force_jet
 from singimpact.contact.points import tangency_points
 from singimpact.contact.swans import swan_points_over_clearance
+from singimpact.flights.impact_map import impact_map
 from singimpact.impact_oscillator import ImpactOscillator
+from singimpact.oscillator import wall_acceleration
 from singimpact.oscillator.model import Oscillator
 
 Flow = Callable[[Any, Any, Any], tuple[Any, Any]]
@@ -30,6 +32,21 @@ Flow = Callable[[Any, Any, Any], tuple[Any, Any]]
 LINEAR = ImpactOscillator("x", "cos(2*t)", "0.3", "0.5")
 DUFFING = ImpactOscillator("x + 0.1*xdot + 0.3*x**3", "cos(1.7*t)", "0.3", "0.6")
 MODELS = {"linear, omega 2": LINEAR, "damped Duffing, omega 1.7": DUFFING}
+
+
+class System(NamedTuple):
+    """An oscillator but for its restitution; a contact point of some order, and a phase before it."""
+
+    name: str
+    f: str
+    g: str
+    clearance: str = "0"
+    order: int = 1
+    tau: float = 0.0
+
+    def over(self, clearance: str, rate: str) -> Oscillator:
+        """The oscillator over a wall at a clearance, with a restitution."""
+        return Oscillator(self.f, self.g, clearance, rate)
 
 
 @dataclass(frozen=True)
@@ -278,14 +295,22 @@ def gamma_cases(j: int) -> tuple[GammaCase, ...]:
     return tuple(cases)
 
 
-def resting_time(model: ImpactOscillator, tau: float, v: float, impacts: int, least: float) -> float:
-    """The time at which chatter from a state comes to rest; flights below the velocity `least` are summed up."""
+def resting_times(model: Oscillator, tau: Any, v: Any, impacts: int, least: float, after: float = -inf) -> Array:
+    """Times at which chatter from states comes to rest, later than a time.
+
+    Parameters
+    ----------
+    impacts : flown at most. least : a velocity from which on the flights left are summed up.
+    """
+    tau, v = np.array(tau, dtype=float), np.array(v, dtype=float)
+    flying = np.arange(tau.size)
     for _ in range(impacts):
-        step = model.impact_map(tau, v)
-        tau, v = float(step.tau), float(step.v)
-        if v < least:
+        step = impact_map(model, tau[flying], v[flying])
+        tau[flying], v[flying] = step.tau, step.v
+        flying = np.flatnonzero((v > least) | (tau < after))
+        if not flying.size:
             break
-    return tau - 2 * v / (float(model.acceleration(tau)) * (1 - as_float(model.restitution)))
+    return np.asarray(tau - 2 * v / (wall_acceleration.acceleration(model, tau) * (1 - as_float(model.restitution))))
 
 
 def many_digits(j: int) -> tuple[Any, Any, Fraction]:

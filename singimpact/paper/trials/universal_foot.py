@@ -13,6 +13,7 @@ from typing import Any
 
 from flint import arb, arb_series, fmpq
 
+from singimpact.algebra.balls import as_rational
 from singimpact.algebra.precision import balls_at
 
 START = 3, 4  # landing and length of the flight from rest at A, for every r
@@ -97,7 +98,7 @@ def foot(rate: Fraction, near: float = EFFORT.near) -> tuple[Fraction, Fraction]
         # t' >= r t (1 - slack t), and slack falls with sigma
         slack = (4 * sigma * (1 + r) + r * r * t) / (6 * (sigma * sigma - 1))
         low, high = sigma + rest * (1 - slack * t / (1 - r)), sigma + rest
-        return _fraction(low.lower()), _fraction(high.upper())
+        return as_rational(low.lower()), as_rational(high.upper())
 
 
 def covering(low: Fraction, high: Fraction) -> list[Box]:
@@ -170,10 +171,5 @@ def elastic() -> Elastic:
         spread = third * (1 + ratio) ** 3 * ratio * ratio / 2
         ball = u * (spread * arb(0, 1)).exp()
         return Elastic(
-            (_fraction(ball.lower()), _fraction(ball.upper())), EFFORT.impacts, float(ratio), float(third.upper())
+            (as_rational(ball.lower()), as_rational(ball.upper())), EFFORT.impacts, float(ratio), float(third.upper())
         )
-
-
-def _fraction(ball: arb) -> Fraction:
-    mantissa, exponent = ball.man_exp()
-    return Fraction(int(mantissa)) * Fraction(2) ** int(exponent)

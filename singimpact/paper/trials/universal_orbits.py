@@ -25,7 +25,7 @@ def negative(r: str) -> ImpactOscillator:
 @lru_cache(maxsize=8)
 def foot(r: str, sigma: float = -1.0, v: float = 0.0) -> float:
     """Where chatter from (sigma, v) comes to rest in the negative swan; for A itself this is X."""
-    return true_orbits.resting_time(negative(r), sigma, v, 2000, 1e-14)
+    return float(true_orbits.resting_times(negative(r), [sigma], [v], 2000, 1e-14)[0])
 
 
 @lru_cache(maxsize=1)
@@ -147,13 +147,13 @@ class Beyond:
 @lru_cache(maxsize=1)
 def beyond() -> Beyond:
     """Where feet exceed X between the inverse images of delta, and what they are next to these."""
-    place, unit, goal = -1.02, 0.02**2 / _outline(-1.02), foot("1/2")
+    place, unit = -1.02, 0.02**2 / _outline(-1.02)
     edges = [height * unit for height in preimages().heights[:6]]
     excess = (1e-4, 5e-5, 1e-5, 5e-6, 1.5e-6)
     counts = tuple(sum(_crossings(place, low, high, more=y) for high, low in pairwise(edges)) for y in excess)
     jumps = [_edge(place, count) for count in range(1, 6)]
     sides = [np.array([low * (1 - TEAR), high * (1 + TEAR)]) for low, high in jumps]
-    tears = [tuple(_feet(negative("1/2"), np.full(2, place), pair) - goal) for pair in sides]
+    tears = [tuple(_off(place, pair)) for pair in sides]
     return Beyond(excess, counts, tuple((float(low), float(high)) for low, high in tears))
 
 
@@ -202,17 +202,5 @@ def _crossings(sigma: float, low: float, high: float, coarse: int = 76, fine: in
 
 
 def _off(sigma: float, v: Any) -> Any:
-    """foot - X over one phase."""
-    return _feet(negative("1/2"), np.full_like(v, sigma), v) - foot("1/2")
-
-
-def _feet(osc: ImpactOscillator, tau: Any, v: Any) -> Any:
-    """Where chatter from arrays of states comes to rest, r = 1/2; what is left at v < 1e-7 is 4v/|a|, to 1e-13."""
-    tau, v = np.array(tau), np.array(v)
-    for _ in range(120):
-        flying = np.flatnonzero(v > 1e-7)
-        if not flying.size:
-            break
-        step = osc.impact_map(tau[flying], v[flying])
-        tau[flying], v[flying] = step.tau, step.v
-    return tau - 2 * v / (osc.acceleration(tau) * 0.5)
+    """foot - X over one phase, r = 1/2; chatter below v = 1e-7 is summed up to 1e-13."""
+    return true_orbits.resting_times(negative("1/2"), np.full_like(v, sigma), v, 120, 1e-7) - foot("1/2")

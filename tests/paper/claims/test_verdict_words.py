@@ -213,10 +213,14 @@ def test_an_integrator_that_fails_makes_no_theorem_wrong(monkeypatch):
     """A claim whose word stands for an exact argument needs no true orbit: where every one raises, it still holds."""
     claims = [CLAIMS[name] for name in CLAIMS]
     with monkeypatch.context() as patched:
-        for name in ("impact_map", "first_hit", "flight", "orbit", "iterate", "chatter_limit", "derivative", "launch"):
+        flights = ("impact_map", "first_hit", "flight", "orbit", "iterate", "chatter_limit", "derivative", "launch")
+        for name in flights:
             patched.setattr(ImpactOscillator, name, _broken)
-        for module in pkgutil.iter_modules(trials.__path__, f"{trials.__name__}."):
-            for value in vars(importlib.import_module(module.name)).values():
+        for item in pkgutil.iter_modules(trials.__path__, f"{trials.__name__}."):
+            module = importlib.import_module(item.name)
+            for name in {*flights} & {*vars(module)}:
+                patched.setattr(module, name, _broken)
+            for value in vars(module).values():
                 if hasattr(value, "cache_clear"):
                     value.cache_clear()  # trials that another test has run
         stopped, apart = [], 0

@@ -1,4 +1,4 @@
-"""chatter, threshold, sweep: what they print and what they refuse."""
+"""chatter, threshold, sweep, ensemble, regions: what they print and what they refuse."""
 
 import inspect
 import json
@@ -33,6 +33,29 @@ def test_threshold(singimpact):
     assert "radius" in many
     refused = singimpact("threshold", *LINEAR, "--tau", "0")
     assert refused.exit_code == 2
+
+
+def test_ensemble(singimpact):
+    asked = ["--tau", "0", "6", "--v", "0", "1", "--size", "20", "--until", "40"]
+    values = json.loads(singimpact("ensemble", *LINEAR, *asked, "--json").output)["averages"]
+    assert set(values) == {"impacts", "v", "rest", "escape_rate"}
+    assert "20 orbits" in singimpact("ensemble", *LINEAR, *asked).output
+
+
+def test_regions(singimpact, tmp_path):
+    window, picture = ["--from", "2", "-0.1", "--to", "3", "0.2", "--size", "6"], tmp_path / "regions.png"
+    asked = [*LINEAR, *window, "-o", picture]
+    classes = json.loads(singimpact("regions", *asked, "--json").output)["classes"]
+    assert sum(item["share"] for item in classes) == pytest.approx(1)
+    assert picture.stat().st_size > 5000
+    assert classes[0]["class"] in singimpact("regions", *asked).output
+    values = json.loads(singimpact("regions", *asked, "--of", "impacts", "--json").output)["impacts"]
+    assert len(values) == len(values[0]) == 6
+    assert "impacts 0" in singimpact("regions", *asked, "--of", "impacts").output
+    upper = ["--upper", "0.6", "--wall", "upper"]
+    assert "lu" in singimpact("regions", *asked, *upper).output
+    for wrong in (["--of", "colour"], ["--over", "omega", "omega"]):
+        assert singimpact("regions", *asked, *wrong).exit_code == 2
 
 
 @pytest.mark.slow

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
@@ -28,9 +29,17 @@ def test_ends_and_rests_are_those_of_each_orbit(name):
     osc, rng, until, count = MODELS[name], np.random.default_rng(3), 25.0, 12
     tau, v = rng.uniform(0, 6, count), rng.uniform(0, 1.5, count)
     v[:3] = 0
-    found = si.ensemble(osc, tau, v, until=until)
+    times = np.linspace(0, until, 201)
+    found = si.ensemble(osc, tau, v, until=until, sample=times)
     for index in range(count):
         orbit = osc.orbit(tau[index], v[index], impacts=200)
+        flown = (times >= tau[index]) & (times <= orbit.end)
+        path = orbit.sample(times[flown])
+        assert np.abs(path.x - found.x[flown, index]).max() < 1e-6
+        away = (np.abs(times[flown, None] - orbit.tau) > 1e-3).all(axis=1)
+        away &= path.x > float(osc.clearance.value) + 1e-4
+        assert np.abs(path.xdot - found.xdot[flown, index])[away].max(initial=0) < 1e-5
+        assert np.isnan(found.x[times < tau[index], index]).all()
         if found.status[index] == 0:  # the first impact after the end
             after = np.flatnonzero((orbit.tau >= until) & np.isin(orbit.kind, ("impact", "graze")))[0]
             assert found.tau[index] == pytest.approx(orbit.tau[after], abs=1e-6)
@@ -50,6 +59,45 @@ def test_a_ball_under_gravity_rests_where_the_sum_of_its_impacts_says():
     assert found.first_rest == pytest.approx(2 * v, rel=1e-13)  # v (1 + r + r^2 + ...) with a = -2
     assert (found.status == Status.sticks).all()
     assert found.survival.share == pytest.approx(1 - np.arange(51) / 50)
+
+
+def test_a_spectrum_has_the_line_of_a_sine_and_all_of_its_power():
+    # without impact, once free motion has died out
+    osc = si.ImpactOscillator("x + 0.2*xdot", "cos(2*t)", -3, "0.5")
+    times = 200 + np.arange(4096) * 2 * np.pi / 64
+    found = si.ensemble(osc, [0.0, 1.0], 0.1, until=times[-1] + 1, sample=times)
+    power = found.spectrum
+    assert power.frequency[power.power.argmax()] == pytest.approx(2, abs=2 * power.frequency[1])
+    amplitude = 1 / np.hypot(3, 0.4)
+    assert power.power.sum() * power.frequency[1] == pytest.approx(amplitude**2 / 2, rel=1e-3)
+    density, across, up = found.density(20)
+    assert (density * np.diff(across)[:, None] * np.diff(up)).sum() == pytest.approx(1)
+
+
+def test_a_mass_that_rests_for_ever_stands_in_the_samples():
+    ball = si.ImpactOscillator("0", "-2", 0, "1/2")
+    found = si.ensemble(ball, 0, [0, 1, 2], until=10, sample=np.linspace(0, 10, 101))
+    assert found.x[found.t[:, None] > np.array([0, 2, 4])].max() == 0
+    assert np.isfinite(found.x).all()
+    above = si.ImpactOscillator("0", "2", -1, "1/2", upper=0)  # the same below a ceiling
+    upper = si.ensemble(above, 0, [0, 1, 2], until=10, sample=np.linspace(0, 10, 101), wall="upper")
+    assert upper.x[:, :2] == pytest.approx(-found.x[:, :2], abs=1e-12)
+
+
+def test_samples_once_a_period_are_those_of_a_section(tmp_path):
+    osc = MODELS["linear"]
+    found = si.ensemble(osc, [0.1, 0.2], 0.5, until=20, sample="pi/8")
+    section = osc.orbit(0.2, 0.5, impacts=40).section("pi/8")
+    assert found.t == pytest.approx(section.t[: found.t.size])
+    assert found.x[:, 1] == pytest.approx(section.x[: found.t.size], abs=1e-9)
+    found.to_npz(tmp_path / "ends.npz")
+    assert np.load(tmp_path / "ends.npz")["x"].shape == found.x.shape == (found.t.size, 2)
+    with pytest.raises(InputError, match="times of samples"):
+        si.ensemble(osc, 0.1, 0.5, until=5).density()
+    with pytest.raises(InputError, match="evenly spaced"):
+        si.ensemble(osc, 0.1, 0.5, until=5, sample=[0.5, 1, 3]).spectrum  # noqa: B018
+    with pytest.raises(InputError, match="an array of times"):
+        si.ensemble(osc, 0.1, 0.5, impacts=5, sample=0)
 
 
 def test_impacts_are_as_many_as_asked_for():
@@ -97,6 +145,8 @@ def test_a_family_has_an_orbit_of_each_model():
 def test_results_go_to_files_and_bad_input_is_refused(tmp_path):
     found = si.ensemble(MODELS["linear"], [0.1, 0.2], 0.5, until=20)
     found.to_csv(tmp_path / "ends.csv")
+    first = (tmp_path / "ends.csv").read_text(encoding="utf-8").partition("\n")[0]
+    assert si.ImpactOscillator(**json.loads(first.removeprefix("# "))) == MODELS["linear"]
     found.to_npz(tmp_path / "ends.npz")
     assert np.load(tmp_path / "ends.npz")["tau"].shape == (2,)
     assert "2 orbits" in repr(found)
