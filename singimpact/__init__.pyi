@@ -11,6 +11,7 @@ from singimpact.branches.transitions import transitions as transitions
 from singimpact.cases import sweep as sweep
 from singimpact.certificates.certificate import certify as certify, read_certificate as read_certificate
 from singimpact.contact.points import tangency_points as tangency_points
+from singimpact.dynamics.bifurcation_diagram import bifurcation as bifurcation
 from singimpact.dynamics.ensemble import ensemble as ensemble
 from singimpact.dynamics.fit import fit as fit
 from singimpact.dynamics.lyapunov import lyapunov as lyapunov
@@ -37,7 +38,6 @@ from singimpact.scenes.orbit_picture import animate as animate
 from singimpact.status import Cause as Cause, Status as Status
 from singimpact.studies import (
     basins as basins,
-    bifurcation as bifurcation,
     certified_gamma as certified_gamma,
     chatter_limit as chatter_limit,
     classify as classify,

@@ -141,9 +141,7 @@ def meant(name: str, accepted: Iterable[str]) -> str | None:
     ('restitution', 'omega', None)
     """
     names = list(accepted)
-    if SYNONYMS.get(name) in names:
-        return SYNONYMS[name]
-    return next(iter(nearest(name, names, count=1)), None)
+    return SYNONYMS[name] if SYNONYMS.get(name) in names else next(iter(nearest(name, names, count=1)), None)
 
 
 def unknown(kind: str, name: str, accepted: Iterable[str]) -> InputError:

@@ -123,8 +123,13 @@ class Result:
         values = self.as_dict()
         arrays = {name: value for name, value in values.items() if isinstance(value, np.ndarray) and value.shape}
         if not arrays:
-            lists = [value for value in values.values() if isinstance(value, list) and is_rows(value)]
-            arrays = columns_of(lists[0] if lists else [values])
+            # such as the points of a classification
+            lists = [
+                value
+                for value in values.values()
+                if isinstance(value, list) and all(isinstance(row, Mapping) for row in value)
+            ]
+            arrays = columns_of(next(filter(None, lists), [values]))
         return {name: (self.array_axes.get(name, default_axes(value.ndim)), value) for name, value in arrays.items()}
 
     def table(self) -> dict[str, Array]:
@@ -223,9 +228,7 @@ def plain(value: Any, name: str = "") -> Any:
         return value.item()
     if isinstance(value, Mapping):
         return {str(key): plain(item) for key, item in value.items()} or None
-    if isinstance(value, list | tuple):
-        return [plain(item) for item in value] or None
-    return value
+    return ([plain(item) for item in value] or None) if isinstance(value, list | tuple) else value
 
 
 def in_status_words(codes: Any, kind: Words) -> Any:
@@ -262,11 +265,6 @@ def numbered(name: str, values: Array) -> dict[str, Array]:
     {'v_1': [0.5, 2.0], 'v_2': [1.0, 3.0]}
     """
     return {f"{name}_{i + 1}": values[:, i] for i in range(values.shape[1])}
-
-
-def is_rows(values: list[Any]) -> bool:
-    """Whether a list is one of dictionaries, such as the points of a classification."""
-    return bool(values) and all(isinstance(value, Mapping) for value in values)
 
 
 def columns_of(rows: Sequence[Mapping[str, Any]]) -> dict[str, Array]:
@@ -339,9 +337,7 @@ def as_json(data: Any) -> Any:
         return [as_json(data.real), as_json(data.imag)]
     if data is None or isinstance(data, bool | int | str):
         return data
-    if isinstance(data, np.ndarray | np.generic):
-        return as_json(data.tolist())
-    return text_of(data)
+    return as_json(data.tolist()) if isinstance(data, np.ndarray | np.generic) else text_of(data)
 
 
 def optional(library: str) -> Any:

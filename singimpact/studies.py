@@ -1,4 +1,4 @@
-"""Studies of a model as a whole: swans, singular points, gamma, basins and bifurcation diagrams.
+"""Studies of a model as a whole: swans, singular points, gamma and basins.
 
 Each function calls one function of a sub-package, and reads windows and intervals as a user writes them.
 """
@@ -13,13 +13,12 @@ from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 from singimpact.algebra.numbers import as_float, as_fraction, constant
 from singimpact.impact_oscillator import ImpactOscillator
-from singimpact.inputs import InputError, checked_keywords, refuse, require_known, takes_two_walls, whole
+from singimpact.inputs import InputError, checked_keywords, refuse, takes_two_walls, whole
 from singimpact.oscillator.model import Oscillator, require_model
 
 if TYPE_CHECKING:
     from singimpact.contact.swans import SwanPoints
     from singimpact.dynamics.basins_of_attraction import Basins
-    from singimpact.dynamics.bifurcation_diagram import Bifurcation
     from singimpact.surface.classification import Classification
     from singimpact.surface.curve import Curve
 
@@ -138,61 +137,6 @@ def basins(
     names = "((x_low, x_high), (xdot_low, xdot_high))" if starts else "((tau_low, tau_high), (v_low, v_high))"
     tau, v = (None, None) if window is None else _two_ends(window, names)
     return basins(osc, tau, v, size, executor, output, impacts, wall)
-
-
-@checked_keywords
-@takes_two_walls
-def bifurcation(
-    osc: Oscillator,
-    over: str,
-    between: Any,
-    points: int = 300,
-    *,
-    start: Any = (0, "0.1"),
-    impacts: int = 200,
-    kept: int = 60,
-    direction: str | None = None,
-    **sweeping: Any,
-) -> Bifurcation:
-    """A bifurcation diagram: the last events of one orbit for each value of a parameter.
-
-    Parameters
-    ----------
-    osc : a model with a period, without t, or with sums of waves in t.
-    over : "clearance", "restitution", a parameter, "amplitude", "damping", "stiffness" or "phase" (also if the model
-        does not name them). between : its interval. points : values, evenly spaced.
-    start : the first state (tau, v) of each orbit. impacts : number for each value.
-    kept : last events of each orbit that are returned.
-    sweeping : `settle`, the impacts at most of an orbit whose events do not repeat (20000); `executor` and `output` of
-        `sweep`.
-    direction : "up", "down", "both": each orbit starts from the last state of the one before, so hysteresis shows.
-
-    Returns
-    -------
-    Bifurcation : `.values`, shape (points,), and `.events`, shape (points, kept, 3): phase, v (-v at an upper wall)
-        and 1 where chatter has ended; nan where an orbit had fewer; without a period the time since the event before
-        stands in place of the phase. `.settled`, shape (points,): whether the events repeat, or where the forcing never
-        does, whether a neighbour comes to the orbit; `.attractors` have the names of basins. `si.plot` draws it,
-        `.to_csv(file)` writes it.
-
-    Raises
-    ------
-    InputError : another model, an unknown parameter, or an interval that is not valid.
-
-    Examples
-    --------
-    >>> from singimpact.impact_oscillator import linear
-    >>> found = bifurcation(linear(2, 0, "0.5"), "clearance", ("0.2", "0.3"), 2, impacts=60, kept=4)
-    >>> found
-    Bifurcation(over clearance: 2 values from 0.2 to 0.3, 4 events of each)
-    >>> found.events[0, :, 1].round(6).tolist()
-    [1.066667, 1.066667, 1.066667, 1.066667]
-    """
-    from singimpact.dynamics.bifurcation_diagram import bifurcation
-
-    accepted = ["executor", "output", "settle", "start", "impacts", "kept", "direction"]
-    require_known("argument of bifurcation", sweeping, accepted)
-    return bifurcation(osc, over, between, points, start, impacts, kept, direction, **sweeping)
 
 
 @checked_keywords

@@ -38,7 +38,9 @@ def derivative(tree: Expression, name: str) -> Expression:
         case Product(factors):
             return add(*(_one_changed(factors, index, name) for index in range(len(factors))))
         case Power(base, exponent):
-            return _power(base, exponent, name)
+            if name not in names_in(exponent):
+                return multiply(exponent, power(base, add(exponent, MINUS_ONE)), derivative(base, name))
+            return multiply(power(base, exponent), derivative(multiply(exponent, Call("log", base)), name))
         case Call(function, argument):
             return multiply(_outer(function, argument), derivative(argument, name))
     raise TypeError(f"not an expression: {tree!r}")
@@ -47,12 +49,6 @@ def derivative(tree: Expression, name: str) -> Expression:
 def _one_changed(factors: tuple[Expression, ...], index: int, name: str) -> Expression:
     changed = derivative(factors[index], name)
     return ZERO if changed == ZERO else multiply(*factors[:index], *factors[index + 1 :], changed)
-
-
-def _power(base: Expression, exponent: Expression, name: str) -> Expression:
-    if name not in names_in(exponent):
-        return multiply(exponent, power(base, add(exponent, MINUS_ONE)), derivative(base, name))
-    return multiply(power(base, exponent), derivative(multiply(exponent, Call("log", base)), name))
 
 
 def _outer(function: str, u: Expression) -> Expression:

@@ -42,11 +42,10 @@ class Horner:
             rows.setdefault(k, {})[i] = value
         self._first = min(rows, default=0)
         # from the highest power of y down: [c_i of x^i, highest first]
-        self._rows = [self._row(rows.get(k, {})) for k in range(max(rows, default=0), self._first - 1, -1)]
-
-    @staticmethod
-    def _row(row: Mapping[int, Any]) -> list[tuple[float, float]]:
-        return [_two_doubles(row.get(i, 0)) for i in range(max(row, default=0), -1, -1)]
+        self._rows = [
+            [_two_doubles(row.get(i, 0)) for i in range(max(row, default=0), -1, -1)]
+            for row in (rows.get(k, {}) for k in range(max(rows, default=0), self._first - 1, -1))
+        ]
 
     def __call__(self, x: Any, y: Any) -> Array:
         """The values at broadcast arrays of doubles."""

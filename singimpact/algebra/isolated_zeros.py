@@ -190,7 +190,7 @@ class _Search:
             return None
         if moved == () or not overlap(moved, balls):
             return ()
-        return self._polished(moved) if self._inside(moved, wider) else None
+        return self._polished(moved) if all(b.contains_interior(a) for a, b in zip(moved, wider, strict=True)) else None
 
     def _polished(self, zero: Place) -> Place:
         """The enclosure of a zero that is known to be there, until it shrinks no more."""
@@ -238,10 +238,6 @@ class _Search:
         low, high = box[k]
         at = low + (high - low) * self.settings.cut
         return [(*box[:k], ends, *box[k + 1 :]) for ends in ((low, at), (at, high))]
-
-    @staticmethod
-    def _inside(one: Place, other: Place) -> bool:
-        return all(b.contains_interior(a) for a, b in zip(one, other, strict=True))
 
 
 def overlap(one: Place, other: Place) -> bool:

@@ -58,7 +58,7 @@ class PackedPolynomials:
     def terms(self, poly: flint.fmpq_mpoly) -> dict[Exponents, Any]:
         """A polynomial as exponents -> coefficient, the nonzero ones."""
         if self._inner is None:
-            return {tuple(map(int, key)): _fraction(value) for key, value in poly.to_dict().items()}
+            return {tuple(map(int, key)): Fraction(int(value.p), int(value.q)) for key, value in poly.to_dict().items()}
         parts: dict[Exponents, dict[Exponents, Any]] = {}
         for key, value in poly.to_dict().items():
             parts.setdefault(tuple(map(int, key[: self.size])), {})[key[self.size :]] = value
@@ -112,10 +112,6 @@ class PackedPolynomials:
 
 def _fmpq(value: int | Fraction) -> flint.fmpq:
     return flint.fmpq(value.numerator, value.denominator)
-
-
-def _fraction(value: flint.fmpq) -> Fraction:
-    return Fraction(int(value.p), int(value.q))
 
 
 class SparsePolynomials:

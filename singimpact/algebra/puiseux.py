@@ -68,7 +68,7 @@ class Puiseux:
         return all(exponent.denominator == 1 and exponent >= 0 for exponent, _ in self.terms)
 
     def __str__(self) -> str:
-        parts = [f"{_bracketed(str(c))}*w**({e})" for e, c in self.terms]
+        parts = [f"{c}*w**({e})" if str(c).isdigit() else f"({c})*w**({e})" for e, c in self.terms]
         return " + ".join([*parts, *([f"O(w**({self.bound}))"] if self.bound is not None else [])]) or "0"
 
 
@@ -160,7 +160,12 @@ class _Expander:
         head = Puiseux(((first * exponent, _power(value, exponent)),))
         terms = {e - first: multiply(c, power(value, MINUS_ONE)) for e, c in base.terms[1:]}
         tail = self.kept(terms, None if base.bound is None else base.bound - first)
-        return self.product(head, self.composed(tail, lambda k: number(_binomial(exponent, k))))
+        return self.product(
+            head,
+            self.composed(
+                tail, lambda k: number(prod(((exponent - i) / (i + 1) for i in range(k)), start=Fraction(1)))
+            ),
+        )
 
     def composed(self, u: Puiseux, coefficient: Callable[[int], Expression]) -> Puiseux:
         """sum c_k u^k for u without a constant term."""
@@ -206,10 +211,6 @@ def _shifted(cut: Puiseux, other: Puiseux) -> Fraction | None:
     if other.terms:
         return cut.bound + other.terms[0][0]
     return None if other.bound is None else cut.bound + other.bound
-
-
-def _binomial(exponent: Fraction, k: int) -> Fraction:
-    return prod(((exponent - i) / (i + 1) for i in range(k)), start=Fraction(1))
 
 
 def _plain(tree: Expression) -> Expression:
@@ -278,7 +279,3 @@ def _taylor(function: str, start: Expression, count: int) -> tuple[Expression, .
         slope = add(ONE if k == 0 else ZERO, multiply(sign, square))
         coefficients.append(multiply(slope, number(Fraction(1, k + 1))))
     return tuple(coefficients)
-
-
-def _bracketed(text: str) -> str:
-    return f"({text})" if not text.isdigit() else text

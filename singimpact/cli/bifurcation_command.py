@@ -1,5 +1,7 @@
 """`singimpact bifurcation`: settled orbits for many values of a parameter."""
 
+from typing import Any
+
 import click
 
 from singimpact.cli.model_options import model_options, over_option, take_branches, take_model, take_orbits
@@ -65,8 +67,8 @@ def command(
 
     # in a direction each orbit begins where the one before ends: there is nothing to share out
     with nullcontext() if workers is None or direction is not None else WorkerPool(workers) as pool:
-        sweeping = {"executor": pool, "output": keep}
-        diagram = bifurcation(model, over, (low, high), points, start, impacts, last_events, direction, **sweeping)
+        settings: dict[str, Any] = {"start": start, "impacts": impacts, "kept": last_events, "direction": direction}
+        diagram = bifurcation(model, over, (low, high), points, **settings, executor=pool, output=keep)
     branches = [
         branch for n, k in follow for branch in take_branches(take_orbits(model, (n, k), None), over, (low, high), 2000)
     ]

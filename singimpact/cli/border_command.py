@@ -60,7 +60,7 @@ def command(
 def _picture(border: BorderOrbit) -> Any:
     from matplotlib.figure import Figure
 
-    from singimpact.scenes.border_picture import draw_border
+    from singimpact.scenes.branch_picture import draw_border
 
     figure = Figure(figsize=(7.2, 5.2), dpi=150, layout="constrained")
     return draw_border(border, *figure.subplots(2, sharex=True, height_ratios=(3, 2))).figure

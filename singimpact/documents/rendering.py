@@ -336,15 +336,12 @@ def display(step: Step, marks: Marks) -> str:
     body = lines[0] if len(lines) == 1 else "\\begin{split}\n&" + "\\\\\n&\\quad{}".join(lines) + "\n\\end{split}"
     if not step.label:
         return f"\\begin{{equation*}}\n{body}\n\\end{{equation*}}"
-    badge = _stacked(marks[step.label].text) if step.label in step.claims else ""
+    # words beside an equation stand below one another where they are long, as the names of theorems are
+    words = marks[step.label].text if step.label in step.claims else ""
+    lines = textwrap.wrap(words, 30, break_long_words=False, break_on_hyphens=False)
+    badge = words if len(lines) < 2 else "\\shortstack[r]{" + "\\\\".join(lines) + "}"
     tag = rf"\tag*{{\beside{{{latex_text(step.label)}}}{{{badge}}}}}\label{{{step.label}}}"
     return f"\\begin{{equation}}{tag}\n{body}\n\\end{{equation}}"
-
-
-def _stacked(words: str, width: int = 30) -> str:
-    """Words beside an equation, in lines one below the other where they are long, as the names of theorems are."""
-    lines = textwrap.wrap(words, width, break_long_words=False, break_on_hyphens=False)
-    return words if len(lines) < 2 else "\\shortstack[r]{" + "\\\\".join(lines) + "}"
 
 
 def notes(step: Step, marks: Marks) -> list[tuple[str, str, str]]:

@@ -358,9 +358,7 @@ def _ratio(value: Any) -> Fraction:
     exact = sympy.sympify(value)
     if exact.free_symbols:
         raise InputError("numpy source needs numbers: a coefficient of this series has symbols")
-    if exact.is_Rational:
-        return Fraction(int(exact.p), int(exact.q))
-    return Fraction(str(sympy.N(exact, 30)))
+    return Fraction(int(exact.p), int(exact.q)) if exact.is_Rational else Fraction(str(sympy.N(exact, 30)))
 
 
 # Expressions as a Python file that defines its letters and keeps every number exact.

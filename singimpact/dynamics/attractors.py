@@ -168,13 +168,12 @@ def _surrounded(model: Oscillator, code: int, tau: float, v: float, fast: float)
 
 @dataclass(frozen=True)
 class NearbySettings:
-    """steps : of Newton's method; at a doubling each halves the distance. closed : relative residual of an orbit, some
+    """closed : relative residual of an orbit, some
     10^5 roundings. near : relative distance within which it is looked for. neutral : size of a multiplier up to which
     an orbit attracts or is neutral. same : relative residual of an orbit after fewer impacts that close it too.
     returned : relative residual of a state that has settled where no orbit is found, as next to a graze.
     """
 
-    steps: int = 30
     closed: float = 1e-11
     near: float = 1e-2
     neutral: float = 1 + 1e-7
@@ -220,7 +219,8 @@ def nearby_orbits(model: Oscillator, tau: Array, v: Array, n: Array, k: Array, f
     starts = np.stack([phases.of(tau), v], axis=-1)
     states, attracting = starts.copy(), np.zeros(tau.size, dtype=bool)
     first, left = np.full(tau.size, np.inf), np.arange(tau.size)
-    for step in range(NEARBY.steps):
+    # steps of Newton's method; at a doubling each halves the distance
+    for step in range(30):
         residual, slopes = _return(model, states[left], n[left], k[left])
         away = np.abs(residual / scale).max(axis=1, initial=0.0)
         if step == 0:

@@ -1,15 +1,15 @@
 """Basins: the attractor of each state of a grid: an (n, k) orbit, a limit cycle, repeated chatter, rest, chaos."""
 
 from abc import abstractmethod
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 from math import log
 from typing import Any, ClassVar
 
 import numpy as np
 
-from singimpact.algebra.numbers import Array, as_float
+from singimpact.algebra.numbers import Array, as_float, float_array
 from singimpact.cases import in_threads
 from singimpact.dynamics.attractors import (
     CHATTER,
@@ -24,6 +24,7 @@ from singimpact.dynamics.attractors import (
     neutral,
     within,
 )
+from singimpact.dynamics.basin_boundaries import BasinEntropy, Uncertainty, entropy_of, uncertainty_of
 from singimpact.dynamics.behaviours import LongRun, behaviour
 from singimpact.dynamics.long_run import futures, lift_offs_of_walls, settled
 from singimpact.dynamics.phases import phases_of
@@ -82,6 +83,11 @@ class ClassGrid(Result):
             for i, name in enumerate(names)
         ]
         return [(int(i), numbered[i], float(counts[i]) / self.codes.size) for i in order]
+
+    @property
+    def decided(self) -> Array:
+        """Whether each class is one of states whose future is known."""
+        return np.array([run.kind not in ("not decided", "unresolved", "sensitive") for run in self.attractors])
 
     @property
     def boundary(self) -> Array:
@@ -167,6 +173,63 @@ class Basins(ClassGrid):
         first = {"class": named.pop("class"), "first_chatter_completes": self.first_chatter_completes.astype(int)}
         return dict(self.sides) | first | named
 
+    def uncertainty(
+        self, distances: Any = None, pairs: int = 2000, impacts: int = SETTINGS.impacts, seed: int = 0, **computing: Any
+    ) -> Uncertainty:
+        """The uncertainty exponent of the boundaries of the basins, from pairs of states that are flown anew.
+
+        Parameters
+        ----------
+        distances : of the states of a pair, in sides of the window, between 0 and 1; seven from 3e-4 to 3e-2 without
+            it. pairs : at each distance, drawn evenly from the window by a numpy generator with the `seed`, in all
+            directions. impacts : at most, of an orbit that does not settle. computing : `executor`,
+            `output` of `sweep`.
+
+        Returns
+        -------
+        Uncertainty : `.exponent` and its `.error`, `.dimension`; nan where `.doubt` says why. Pairs count whose states
+            are both decided.
+
+        Examples
+        --------
+        >>> found = basins(Oscillator("x", "cos(2*t)", "0.7", "1/2"), v=(0, 1), size=4)
+        >>> found.uncertainty(pairs=20).doubt
+        'no exponent: 0 distances have 5 uncertain pairs, give more pairs or other distances'
+        """
+        sizes = np.geomspace(3e-4, 3e-2, 7) if distances is None else float_array("distances", distances).ravel()
+        if np.unique(sizes).size < 3 or not ((sizes > 0) & (sizes < 1)).all():
+            raise refuse("distances", distances, "three numbers or more between 0 and 1, in sides of the window")
+        shape = 2, sizes.size, whole("pairs", pairs, 1, 10**7)
+        rng = np.random.default_rng(seed)
+        angles = 2 * np.pi * rng.random(shape[1:])
+        halves = sizes[:, None] / 2 * np.array([np.cos(angles), np.sin(angles)])
+        middles = np.abs(halves) + rng.random(shape) * (1 - 2 * np.abs(halves))
+        places = np.concatenate([middles - halves, middles + halves], axis=1).reshape(2, -1)
+        ends = [(float(values[0]), float(values[-1])) for _, values in self.sides]
+        study, states = placed(self.model, (ends[0], ends[1]), places, self.wall, impacts)
+        attractors, codes = named(study, for_ever(study, states, _classes(study, states, pairs, computing))[0])
+        decided = replace(self, attractors=attractors).decided[codes].reshape(shape).all(axis=0)
+        unlike = np.not_equal(*codes.reshape(shape)) & decided
+        return uncertainty_of(sizes, decided.sum(axis=1), unlike.sum(axis=1))
+
+    def entropy(self, box: int = 5) -> BasinEntropy:
+        """The basin entropy of boxes of the grid, and that of the boxes with several attractors.
+
+        Parameters
+        ----------
+        box : states on the side of a box. States that are not decided are left out.
+
+        Returns
+        -------
+        BasinEntropy : `.entropy`, `.boundary`, in natural units; above ln 2 the second one shows a fractal boundary.
+
+        Examples
+        --------
+        >>> basins(Oscillator("x", "cos(2*t)", "0.7", "1/2"), v=(0, 1), size=4).entropy(2).entropy
+        0.0
+        """
+        return entropy_of(self.codes, self.decided, whole("box", box, 1, min(self.codes.shape)))
+
 
 @dataclass(frozen=True, repr=False)
 class StartBasins(Basins):
@@ -229,24 +292,49 @@ def basins(
     >>> found.codes.shape, found.classes[0][1]
     ((16, 16), '(inf, 1) chatter for ever')
     """
+    side = checked_wall(model, wall)
+    if isinstance(size, bool) or not isinstance(size, int) or not 2 <= size <= 10_000:
+        raise refuse("size", size, "an integer from 2 to 10000")
+    middles = np.arange(size) + 0.5
+    study, (times, speeds) = placed(model, (tau, v), (middles, middles), side, impacts, size)
+    signed_iterate(model, times[:1], speeds[-1:], 1)  # compiled here once, and not by every worker of a pool
+    tau, v = (coordinates.ravel() for coordinates in np.meshgrid(times, speeds))
+    table = _classes(study, (tau, v), size, {"executor": executor, "output": output})
+    table, first = for_ever(study, (tau, v), table)
+    attractors, codes = named(study, table)
+    walls = None if model.upper is None or model.autonomous else side[()]
+    return (Basins if study.phases.clocked else StartBasins)(
+        model,
+        times,
+        -speeds if side else speeds,
+        attractors,
+        codes.reshape(size, size),
+        first.reshape(size, size),
+        walls,
+    )
+
+
+def checked_wall(model: Oscillator, wall: Any) -> Array:
+    """The code of the wall of all states of a model that has basins."""
     require_model("model", model)
     if model.period is None and not oscillates(model.force(), model.forcing()):
         raise refuse("model", model, "one with a period, without t, or with sums of waves in t")
     side = wall_codes(model, wall)
     if side.shape or (model.autonomous and wall is not None):
         raise refuse("wall", wall, "one wall, that of all states; none for a model without t, whose starts lie off it")
-    if isinstance(size, bool) or not isinstance(size, int) or not 2 <= size <= 10_000:
-        raise refuse("size", size, "an integer from 2 to 10000")
-    (low, high), (slow, fast) = _window(model, tau, v)
-    times = low + (np.arange(size) + 0.5) * (high - low) / size
-    speeds = slow + (np.arange(size) + 0.5) * (fast - slow) / size
-    signed_iterate(model, times[:1], speeds[-1:], 1)  # compiled here once, and not by every worker of a pool
-    study = Study(model, lift_offs_of_walls(model), max(-slow, fast), whole("impacts", impacts, 1, 10**7), high)
-    tau, v = (coordinates.ravel() for coordinates in np.meshgrid(times, -speeds if side else speeds))
-    table = _classes(study, (tau, v), size, {"executor": executor, "output": output})
-    table, flown, first = table[:, :3], table[:, 3], table[:, 4] > 0
+    return side
+
+
+def for_ever(study: Study, states: tuple[Array, Array], table: Array) -> tuple[Array, Array]:
+    """Rows of what states do for ever, shape (n, 3), and whether their first chatters complete, shape (n,).
+
+    Parameters
+    ----------
+    table : of `classify`, shape (n, 5).
+    """
+    (tau, v), table, flown, first = states, table[:, :3], table[:, 3], table[:, 4] > 0
     doubtful = set[tuple[float, ...]]()
-    follows = futures(model, study.lift_offs, partial(_after_lift_off, study, doubtful))
+    follows = futures(study.model, study.lift_offs, partial(_after_lift_off, study, doubtful))
     for index in range(len(study.lift_offs)):
         table[first & (table[:, 1] == index)] = settled(follows, index, study.phases.unit)
     if _several(study, table[settles(table)]):
@@ -258,13 +346,19 @@ def basins(
     if not study.phases.clocked:
         cycles = np.flatnonzero(table[:, 0] >= PLACES)
         several, which = np.unique(table[cycles][:, [0, 2]], axis=0, return_inverse=True)
-        level = neutral(model, several[:, 0].astype(np.int64) // PLACES, several[:, 1])[which.ravel()]
+        level = neutral(study.model, several[:, 0].astype(np.int64) // PLACES, several[:, 1])[which.ravel()]
         table[cycles[level]] = LEVEL, 0.0, 0.0
-    attractors, codes = _named(study, table)
-    walls = None if model.upper is None or model.autonomous else side[()]
-    return (Basins if study.phases.clocked else StartBasins)(
-        model, times, speeds, attractors, codes.reshape(size, size), first.reshape(size, size), walls
-    )
+    return table, first
+
+
+def placed(
+    model: Oscillator, window: Sequence[Any], places: Sequence[Array], side: Any, impacts: int, parts: int = 1
+) -> tuple[Study, tuple[Array, Array]]:
+    """The study of a window, and its states at places, two arrays, in so many parts of its sides."""
+    (low, high), (slow, fast) = _window(model, *window)
+    speeds = slow + places[1] * (fast - slow) / parts
+    study = Study(model, lift_offs_of_walls(model), max(-slow, fast), whole("impacts", impacts, 1, 10**7), high)
+    return study, (low + places[0] * (high - low) / parts, -speeds if side else speeds)
 
 
 def _window(model: Oscillator, tau: Any, v: Any) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -283,25 +377,31 @@ def _window(model: Oscillator, tau: Any, v: Any) -> tuple[tuple[float, float], t
     return ends, (slow, fast)
 
 
-def classified(
-    fields: Mapping[str, Any], study: tuple[Any, float, int, float], states: tuple[tuple[float, ...], ...]
-) -> Array:
+Case = tuple[dict[str, Any], tuple[Any, float, int, float], tuple[tuple[float, ...], ...]]
+
+
+def case_of(study: Study, states: Sequence[Array]) -> Case:
+    """States as a case of a sweep: fields of the model, those of the study, tau and v."""
+    described = study.lift_offs, study.fast, study.impacts, study.start
+    return dict(study.model.to_dict()), described, tuple(tuple(column.tolist()) for column in states)
+
+
+def classified(case: Case) -> Array:
     """`classify` of some states. A module-level function, so that it can be pickled."""
-    several = Study(Oscillator(**fields), *study)
-    tau, v = np.array(states[0]), np.array(states[1])
-    return (classify if several.phases.repeats else responses)(several, tau, v)
+    fields, described, states = case
+    study = Study(Oscillator(**fields), *described)
+    return (classify if study.phases.repeats else responses)(study, np.array(states[0]), np.array(states[1]))
 
 
 def _classes(study: Study, states: tuple[Array, Array], size: int, computing: dict[str, Any]) -> Array:
     """The rows of `classify` of states, some rows of the grid in a case."""
     tau, v = states
-    wanted = max(SETTINGS.states, size * size / SETTINGS.cases)
+    wanted, count = max(SETTINGS.states, tau.size / SETTINGS.cases), tau.size // size
     # whole rows, and as many in each case
-    rows = [n for n in range(1, size + 1) if size % n == 0]
+    rows = [n for n in range(1, count + 1) if count % n == 0]
     long = size * min(rows, key=lambda n: abs(log(n * size / wanted)))
-    cases = [(tuple(tau[i : i + long].tolist()), tuple(v[i : i + long].tolist())) for i in range(0, tau.size, long)]
-    work = partial(classified, dict(study.model.to_dict()), (study.lift_offs, study.fast, study.impacts, study.start))
-    return np.concatenate([np.asarray(block) for block in in_threads(work, cases, computing)])
+    cases = [case_of(study, (tau[i : i + long], v[i : i + long])) for i in range(0, tau.size, long)]
+    return np.concatenate([np.asarray(block) for block in in_threads(classified, cases, computing)])
 
 
 def _open_to_rounding(study: Study, table: Array, flown: Array) -> Array:
@@ -314,7 +414,7 @@ def _open_to_rounding(study: Study, table: Array, flown: Array) -> Array:
 
 def _several(study: Study, rows: Array) -> bool:
     """Whether rows of settled states are of more than one attractor."""
-    return np.unique(_named(study, rows)[1]).size > 1
+    return np.unique(named(study, rows)[1]).size > 1
 
 
 def _after_lift_off(study: Study, doubtful: set[tuple[float, ...]], tau: Array, v: Array) -> Array:
@@ -331,7 +431,7 @@ def _after_lift_off(study: Study, doubtful: set[tuple[float, ...]], tau: Array, 
     return rows
 
 
-def _named(study: Study, rows: Array) -> tuple[tuple[LongRun, ...], Array]:
+def named(study: Study, rows: Array) -> tuple[tuple[LongRun, ...], Array]:
     """The classes that occur, and the index of each row among them; rows near one orbit are one class."""
     classes, codes, left = list[LongRun](), np.full(len(rows), -1), np.ones(len(rows), dtype=bool)
     while left.any():

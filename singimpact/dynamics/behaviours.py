@@ -1,5 +1,6 @@
 """Long-term behaviours of orbits and their names, the same in basins and in bifurcation diagrams."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,6 +26,9 @@ from singimpact.dynamics.settling import Study
 from singimpact.flights.horizons import horizon_of
 from singimpact.flights.orbits import signed_iterate
 
+# Distance of the states of an attractor at neighbouring values of a number, in periods and highest velocities, from
+# which on they are two attractors; of 20 values over 0.1 of a clearance (1, 1) orbits move by 0.02
+JUMP = 0.1
 KINDS = {
     OTHER: "not decided",
     CHAOS: "chaotic",
@@ -126,3 +130,44 @@ def behaviour(study: Study, row: Array) -> LongRun:
     if code == RESTING:
         return LongRun("chatter", np.inf, 0, none, none)
     return LongRun(KINDS[int(code)], 0, 0, none, none, study.impacts, horizon_of(model, None))
+
+
+def matched(
+    groups: Sequence[Sequence[LongRun]], units: Sequence[float], fast: float, jump: float = JUMP
+) -> tuple[list[LongRun], list[list[int]]]:
+    """Attractors of a sequence of models, each at the last model that has it, and the numbers of those of each model.
+
+    Parameters
+    ----------
+    groups : those of each model. units : the period of each, inf where states have no phase. fast : a velocity.
+    jump : the distance of states, in periods and in `fast`, from which on attractors of one class are two.
+
+    Examples
+    --------
+    >>> runs = [LongRun("orbit", 1, 1, np.array([0.1]), np.array([v])) for v in (1.0, 1.05, 2.0)]
+    >>> matched([[run] for run in runs], [1.0] * 3, 2.0)[1]
+    [[0], [0], [1]]
+    """
+    last, labels = list[tuple[LongRun, float]](), list[list[int]]()
+    for runs, unit in zip(groups, units, strict=True):
+        gaps = sorted((_gap((run, unit), old, fast), i, k) for i, run in enumerate(runs) for k, old in enumerate(last))
+        own = dict[int, int]()
+        for gap, i, label in gaps:
+            if gap < jump and i not in own and label not in own.values():
+                own[i] = label
+        for i, run in enumerate(runs):
+            label = own.setdefault(i, len(last))
+            last[label : label + 1] = [(run, unit)]
+        labels.append([own[i] for i in range(len(runs))])
+    return [run for run, _ in last], labels
+
+
+def _gap(one: tuple[LongRun, float], other: tuple[LongRun, float], fast: float) -> float:
+    """The largest distance of a state of an attractor from the nearest one of another; inf of two classes."""
+    (run, unit), (old, before) = one, other
+    if (run.kind, run.n, run.k, run.word) != (old.kind, old.n, old.k, old.word):
+        return np.inf
+    turns, speeds = np.subtract.outer(run.tau / unit, old.tau / before), np.subtract.outer(run.v, old.v) / fast
+    away = np.maximum(np.abs(turns - np.rint(turns)), np.abs(speeds))
+    places = np.nan_to_num(abs(run.x - old.x) / max(abs(run.x), abs(old.x), 1e-300))
+    return float(max(away.min(axis=0, initial=1.0).max(initial=places), away.min(axis=1, initial=1.0).max(initial=0.0)))

@@ -36,7 +36,7 @@ from singimpact.dynamics.orbit import Orbit, dropped_orbit, orbit
 from singimpact.dynamics.phases import Times, phases_of
 from singimpact.dynamics.settling import Study
 from singimpact.dynamics.synchrony import meets
-from singimpact.inputs import refuse, require_memory
+from singimpact.inputs import checked_keywords, refuse, require_known, require_memory, takes_two_walls
 from singimpact.oscillator.model import Oscillator, require_model
 from singimpact.oscillator.moving_number import with_number
 from singimpact.oscillator.period import moving_in_time, oscillates
@@ -47,20 +47,10 @@ from singimpact.surface.curve import window_ends
 FEW = 200_000
 
 
-@dataclass(frozen=True)
-class BifurcationSettings:
-    """When an orbit is taken as settled."""
-
-    # periods after which a motion without impact is taken as settled
-    free: int = 200
-    # impacts at most, of an orbit that does not settle
-    settle: int = 20_000
-    # events of the longest period that is looked for, and relative distance of events that repeat
-    period: int = 64
-    close: float = 1e-6
-
-
-SETTINGS = BifurcationSettings()
+# Impacts at most, of an orbit that does not settle
+SETTLE = 20_000
+# Events of the longest period that is looked for, and relative distance of events that repeat
+PERIOD, CLOSE = 64, 1e-6
 Row = tuple[float, float, float]
 WAYS = {"up": ("up",), "down": ("down",), "both": ("up", "down")}
 
@@ -123,49 +113,69 @@ class Bifurcation(Result):
         return {self.over: values, "phase": phase[there], "v": v[there], "chatter_ended": ends}
 
 
+@checked_keywords
+@takes_two_walls
 def bifurcation(
-    model: Oscillator,
+    osc: Oscillator,
     over: str,
     between: Any,
     points: int = 300,
+    *,
     start: Any = (0, "0.1"),
     impacts: int = 200,
     kept: int = 60,
     direction: str | None = None,
     **sweeping: Any,
 ) -> Bifurcation:
-    """The last events of an orbit for evenly spaced values of a parameter.
+    """A bifurcation diagram: the last events of one orbit for each value of a parameter.
 
     Parameters
     ----------
-    over : clearance, restitution, a parameter, or another number that `with_number` puts in. between : its ends.
-    points : values. start : the state (tau, v). impacts : flown for each value; more until the events repeat, at most
-        `settle`. kept : events of its end.
-    direction : "up", "down" or "both": each orbit starts from the last state of the value before, in a row, so that a
-        branch is followed to its end. sweeping : `settle`; `executor` and `output` of `sweep`, not with a direction;
-        without an executor a few values are flown here, which takes less time than to start processes.
+    osc : a model with a period, without t, or with sums of waves in t.
+    over : "clearance", "restitution", a parameter, "amplitude", "damping", "stiffness" or "phase" (also if the model
+        does not name them). between : its interval. points : values, evenly spaced.
+    start : the first state (tau, v) of each orbit. impacts : number for each value.
+    kept : last events of each orbit that are returned.
+    sweeping : `settle`, the impacts at most of an orbit whose events do not repeat (20000); `executor` and `output` of
+        `sweep`.
+    direction : "up", "down", "both": each orbit starts from the last state of the one before, so hysteresis shows.
+
+    Returns
+    -------
+    Bifurcation : `.values`, shape (points,), and `.events`, shape (points, kept, 3): phase, v (-v at an upper wall)
+        and 1 where chatter has ended; nan where an orbit had fewer; without a period the time since the event before
+        stands in place of the phase. `.settled`, shape (points,): whether the events repeat, or where the forcing never
+        does, whether a neighbour comes to the orbit; `.attractors` have the names of basins. `si.plot` draws it,
+        `.to_csv(file)` writes it.
+
+    Raises
+    ------
+    InputError : another model, an unknown parameter, or an interval that is not valid.
 
     Examples
     --------
-    >>> from concurrent.futures import ThreadPoolExecutor
-    >>> with ThreadPoolExecutor(1) as pool:
-    ...     model = Oscillator("x", "cos(2*t)", 0, "1/2")
-    ...     found = bifurcation(model, "clearance", ("0.2", "0.3"), 2, impacts=60, kept=4, executor=pool)
-    >>> found.events.shape, bool(abs(found.events[0, 0] - found.events[0, 3]).max() < 1e-6)
-    ((2, 4, 3), True)
+    >>> found = bifurcation(Oscillator("x", "cos(2*t)", 0, "1/2"), "clearance", ("0.2", "0.3"), 2, kept=4)
+    >>> found
+    Bifurcation(over clearance: 2 values from 0.2 to 0.3, 4 events of each)
+    >>> found.events[0, :, 1].round(6).tolist()
+    [1.066667, 1.066667, 1.066667, 1.066667]
     """
-    require_model("model", model)
-    model = with_number(model, over)
+    accepted = ["executor", "output", "settle", "start", "impacts", "kept", "direction"]
+    require_known("argument of bifurcation", sweeping, accepted)
+    require_model("osc", osc)
+    model = with_number(osc, over)
     if model.period is None and not oscillates(model.force(), model.forcing()):
         raise refuse("model", model, "one with a period, without t, or with sums of waves in t")
     for name, value, least in (("points", points, 2), ("impacts", impacts, 1), ("kept", kept, 1)):
         if isinstance(value, bool) or not isinstance(value, int) or value < least:
             raise refuse(name, value, f"a whole number from {least}")
-    settle = sweeping.pop("settle", SETTINGS.settle)
+    settle = sweeping.pop("settle", SETTLE)
     low, high = window_ends(over, between)
     require_memory("values with their last events", (points, kept), 48)  # three doubles each, and a copy
     values = np.linspace(low, high, points)
-    periods = _periods(model, over, values)
+    periods = np.full(values.size, as_float(model.period))
+    if any(over in names_in(tree) for tree in moving_in_time(model.f, model.g).values()):  # of others it is one
+        periods = np.array([as_float(model.replace(**{over: value}).period) for value in values.tolist()])
     if direction is not None:
         if direction not in WAYS:
             raise refuse("direction", direction, "'up', 'down' or 'both'")
@@ -196,13 +206,6 @@ def _result(
         behaviour(Study(moved, (), 1.0, settle), row) for moved, row in zip(models, events[:, -1], strict=True)
     )
     return Bifurcation(over, values, events[:, :-2], direction, periods, events[:, -2, 0] == 1, settle, runs)
-
-
-def _periods(model: Oscillator, over: str, values: Array) -> Array:
-    """The period at each value; only parameters that occur beside t change it."""
-    if not any(over in names_in(tree) for tree in moving_in_time(model.f, model.g).values()):
-        return np.full(values.size, as_float(model.period))
-    return np.array([as_float(model.replace(**{over: value}).period) for value in values.tolist()])
 
 
 def settled(
@@ -268,9 +271,9 @@ def _ending(flown_orbit: Orbit) -> Row | None:
         return _orbit(flown_orbit, n, fast) if n else None
     if turn := _between_lift_offs(flown_orbit):
         return (CHATTER, 0.0, float(phases.periods(np.array(turn))))
-    for n in range(1, min(SETTINGS.period, tau.size // 2) + 1):
+    for n in range(1, min(PERIOD, tau.size // 2) + 1):
         last_ones, before = slice(-n, None), slice(-2 * n, -n)
-        if apart((tau[last_ones], v[last_ones]), (tau[before], v[before]), phases, fast).max() < SETTINGS.close:
+        if apart((tau[last_ones], v[last_ones]), (tau[before], v[before]), phases, fast).max() < CLOSE:
             if not (flown_orbit.kind[flown_orbit.tau >= tau[-2 * n]] == "impact").all():
                 return (CHATTER, 0.0, float(phases.periods(tau[-1] - tau[-1 - n])))
             return _orbit(flown_orbit, n, fast)
@@ -283,7 +286,7 @@ def _between_lift_offs(flown_orbit: Orbit) -> float:
     if not lifted.size:
         return 0.0
     times = flown_orbit.tau[lifted]
-    same = np.abs(phases_of(flown_orbit.oscillator).off(times[:-1], times[-1])) < SETTINGS.close
+    same = np.abs(phases_of(flown_orbit.oscillator).off(times[:-1], times[-1])) < CLOSE
     if flown_orbit.wall is not None:
         same &= flown_orbit.wall[lifted[:-1]] == flown_orbit.wall[lifted[-1]]
     return float(times[-1] - times[:-1][same][-1]) if same.any() else 0.0
@@ -292,9 +295,7 @@ def _between_lift_offs(flown_orbit: Orbit) -> float:
 def _response(flown_orbit: Orbit, fast: float) -> Row | None:
     """The row of an orbit under a forcing that never repeats, where a neighbour comes to it."""
     tau, v = float(flown_orbit.tau[-1]), float(flown_orbit.speeds[-1])
-    if v == 0:
-        return None
-    return (RESPONSE, tau, v) if meets(Study(flown_orbit.oscillator, (), fast, 1), tau, v) else None
+    return (RESPONSE, tau, v) if v and meets(Study(flown_orbit.oscillator, (), fast, 1), tau, v) else None
 
 
 def _cycle(spans: Array, v: Array) -> int:
@@ -303,10 +304,10 @@ def _cycle(spans: Array, v: Array) -> int:
     The distance that is left is that of a geometric sequence with the ratio of the last two changes.
     """
     sizes = Times(max(float(spans.max(initial=0.0)), 1e-300)), max(float(np.abs(v).max(initial=0.0)), 1e-300)
-    for n in range(1, min(SETTINGS.period, v.size // 3) + 1):
+    for n in range(1, min(PERIOD, v.size // 3) + 1):
         parts = [(spans[v.size - k * n :][:n], v[v.size - k * n :][:n]) for k in (1, 2, 3)]
         last, before = (apart(parts[i], parts[i + 1], *sizes).max() for i in (0, 1))
-        if last < SETTINGS.close and (last < 1e-14 or last * last < SETTINGS.close * max(before - last, 0.0)):
+        if last < CLOSE and (last < 1e-14 or last * last < CLOSE * max(before - last, 0.0)):
             return n
     return 0
 
@@ -318,7 +319,7 @@ def _orbit(flown_orbit: Orbit, n: int, fast: float) -> Row | None:
     turns, tau = phases.periods(end[-1:] - end[-1 - n]).astype(np.int64), phases.of(end[-1:])
     beside = nearby_orbits(flown_orbit.oscillator, tau, v[-1:], np.array([n]), turns, fast)
     away = apart((beside.tau, beside.v), (tau, v[-1]), phases, fast)
-    if not np.where(beside.found, away < SETTINGS.close, beside.returned)[0]:
+    if not np.where(beside.found, away < CLOSE, beside.returned)[0]:
         return None
     n, k = (int(beside.n[0]), int(beside.k[0])) if beside.found[0] else (n, int(turns[0]))
     if not phases.clocked and neutral(flown_orbit.oscillator, np.array([n]), v[-1:])[0]:
@@ -352,7 +353,8 @@ def _continued(moved: Oscillator, last: Orbit, row: Row, impacts: int) -> Orbit:
         return dropped_orbit(moved, (x, 0.0, 0.0), impacts)
     period, before = phases_of(moved).unit, phases_of(last.oscillator).unit
     away = bool(last.phases) and last.phases[-1][0] == "no_return"
-    time = min(last.end, float(last.tau[-1]) + SETTINGS.free * before) if away else float(last.tau[-1])
+    # periods after which a motion without impact is taken as settled
+    time = min(last.end, float(last.tau[-1]) + 200 * before) if away else float(last.tau[-1])
     tau = _phase(last, time) / before * period
     if not away:
         return orbit(moved, tau, float(last.v[-1]), impacts, wall=_wall(last))

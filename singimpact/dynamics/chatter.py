@@ -247,12 +247,6 @@ def impacts_until(osc: Oscillator, error: float, wanted: float) -> int:
     return max(1, ceil(log(error / (wanted + 1e-300)) / (order * -log(r))))
 
 
-def _last(terms: list[Any]) -> Any:
-    """The size of the last term; extrapolated from the term before it if its own coefficient happens to be small."""
-    first, *_, before, last = terms
-    return max(abs(last), abs(before) * abs(before / first) ** (first * 0 + 1 / (len(terms) - 2)))
-
-
 def _abreast(osc: Oscillator, states: States, most: int, at: list[int]) -> "Iterator[_Flown]":
     """The sequences of some of the states, in blocks in which a formula is evaluated for all states at once."""
     begin, many = 0, 4
@@ -260,7 +254,7 @@ def _abreast(osc: Oscillator, states: States, most: int, at: list[int]) -> "Iter
     while begin < len(at):
         block = [_Flown(laws, states, most, index) for index in at[begin : begin + many]]
         going = block
-        while going := [flown for flown in going if flown.is_going]:
+        while going := [flown for flown in going if flown.over is None and flown.status == Status.hit]:
             for wall, law in enumerate(laws):
                 _look_ahead(law.osc, [flown for flown in going if flown.wall == wall])
         _differentiate(osc, [flown for flown in block if flown.over and len(flown.matrices) < len(flown.times) - 1])
@@ -333,16 +327,6 @@ class _Flown:
         """The restitution there."""
         return self.laws[self.wall]
 
-    @property
-    def osc(self) -> Oscillator:
-        """The model whose lower wall it is."""
-        return self.law.osc
-
-    @property
-    def is_going(self) -> bool:
-        """Whether neither an end nor a last flight has been reached."""
-        return self.over is None and self.status == Status.hit
-
     def go_on(self, a: float, left: float, error: float) -> None:
         """End, or fly further impacts.
 
@@ -352,19 +336,19 @@ class _Flown:
         """
         tau, v, self.push = self.times[-1], self.speeds[-1], a
         summed = self.short or (self.law.tried and a < 0)
-        crosses = summed and not stays_below(self.osc, v, a)
+        crosses = summed and not stays_below(self.law.osc, v, a)
         if a >= 0 and len(self.times) > 1:
             self.over = tau, 0.0, Status.lifts_off
         elif summed and not crosses and (error <= EPSILON * max(abs(tau), left) / 4 or v < 1e-290):
             self.over = tau + left, error, Status.complete
         elif self.short and not crosses and not np.isfinite(error):  # a derivative of a_c leaves the range of doubles
             self.status, self.cause = Status.unresolved, Cause.overflow
-        elif self._left() <= 0:
+        elif len(self.times) > self.most:
             self.status, self.cause = Status.unresolved, Cause.impacts_exhausted
         else:
             count = 1 if crosses else 256
             if summed and not crosses:
-                count = impacts_until(self.osc, error, EPSILON * abs(tau) / 8)
+                count = impacts_until(self.law.osc, error, EPSILON * abs(tau) / 8)
             self.status = self._fly(count, 0.0 if self.short or self.law.elastic else ENDING.near)
 
     def ended(self) -> ChatterLimit:
@@ -378,15 +362,11 @@ class _Flown:
             tau, total = tau + self.turns, total + EPSILON / 2 * abs(tau + self.turns)
         return ChatterLimit(np.float64(tau), count, np.float64(total), np.int8(status))
 
-    def _left(self) -> int:
-        """The number of impacts that are left of the limit."""
-        return self.most - (len(self.times) - 1)
-
     def _first(self) -> Status:
         """Fly the first impact of a start at rest by the impact map, which handles rest and lift-off."""
         if self.speeds[0] > 0:
             return Status.hit
-        step = impact_map(self.osc, *self.given)
+        step = impact_map(self.law.osc, *self.given)
         if step.status == Status.hit:
             self.times.append(float(step.tau) - self.turns)
             self.speeds.append(float(step.v))
@@ -396,7 +376,9 @@ class _Flown:
 
     def _fly(self, count: int, near: float) -> Status:
         """Fly further impacts; the sequence is cut after the first impact with a_c >= 0."""
-        segment = orbit_segment(self.osc, self.times[-1], self.speeds[-1], min(count, 4096, self._left()), near)
+        segment = orbit_segment(
+            self.law.osc, self.times[-1], self.speeds[-1], min(count, 4096, self.most + 1 - len(self.times)), near
+        )
         lifted = np.flatnonzero(segment.acceleration[1:] >= 0)
         length, wall = int(lifted[0]) + 1 if lifted.size else segment.tau.size, self.wall
         if self.law.has_slopes:
@@ -408,7 +390,7 @@ class _Flown:
         self.walls += (segment.wall[:length] ^ np.int8(wall)).tolist()
         if length != segment.tau.size:
             return Status.hit
-        if segment.status and len(self.times) > 1 and acceleration(self.osc, np.array(self.times[-1:]))[0] >= 0:
+        if segment.status and len(self.times) > 1 and acceleration(self.law.osc, np.array(self.times[-1:]))[0] >= 0:
             return Status.hit  # the mass lifts off here, so the status of the flight after it does not matter
         self.cause, self.short = Cause(segment.cause), self.short or segment.short
         if not segment.status and not self.short and self._is_settled(length):
@@ -418,9 +400,9 @@ class _Flown:
 
     def _is_settled(self, count: int) -> bool:
         """Whether the last of so many impacts repeats one of the others, see `CLOSE`."""
-        if self.osc.period is None:
+        if self.law.osc.period is None:
             return False
-        turns = np.array(self.times[-count:]) / as_float(self.osc.period)
+        turns = np.array(self.times[-count:]) / as_float(self.law.osc.period)
         apart, speeds = np.abs(turns[:-1] - turns[-1]), np.array(self.speeds[-count:])
         # times lose digits in their size
         close = np.abs(apart - np.round(apart)) <= CLOSE + EPSILON * abs(turns[-1])
@@ -431,7 +413,7 @@ class _Flown:
         first, times, speeds = self.times[0], self.times, self.speeds
         by_tau, by_v = 1.0, 0.0
         if status == Status.complete:
-            by_v = -2 / self.push / (1 - self.law.r) if self.osc.smooth_at_rest else self._end_by_v()
+            by_v = -2 / self.push / (1 - self.law.r) if self.law.osc.smooth_at_rest else self._end_by_v()
         total = 0.0
         for index in range(len(times) - 1, -1, -1):
             total += abs(by_tau) * (abs(times[index]) + abs(times[index] - first)) + 4 * abs(by_v) * speeds[index]
@@ -443,7 +425,7 @@ class _Flown:
     def _end_by_v(self) -> float:
         """The derivative of the end by the last velocity, from the time left at two velocities."""
         v = self.speeds[-1]
-        (less, _), (more, _) = (chatter_left(self.osc, self.times[-1], speed) or (0.0, 0.0) for speed in (v / 2, v))
+        (less, _), (more, _) = (chatter_left(self.law.osc, self.times[-1], speed) or (0.0, 0.0) for speed in (v / 2, v))
         return 2 * (more - less) / v if v > 0 else 0.0
 
 
@@ -468,7 +450,9 @@ def _precise(osc: Oscillator, states: States, rough: ChatterLimit, digits: int) 
             rho = {k: value for k, value in series_of_rho(osc, ENDING.many, ring).items() if k > 1}
             contact = Contact.of(osc, tau, 0, ENDING.many, ring)
             terms = [c * v**n for n, c in by_velocity(contact, r, rho, ENDING.many).items()]
-            error = _last(terms)
+            first, *_, before, last = terms
+            # a coefficient may happen to be small: the term before it lets expect the last one
+            error = max(abs(last), abs(before) * abs(before / first) ** (first * 0 + 1 / (len(terms) - 2)))
             end = tau + sum(reversed(terms))
             if ENDING.trust * error <= small * abs(end) or v == 0:
                 limit = _rounded(end, count, ENDING.trust * error + small * abs(end), Status.complete, digits)

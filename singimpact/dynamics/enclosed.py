@@ -41,7 +41,7 @@ class GuideSettings:
     ----------
     terms : of the series of gamma, and one more for so many digits. impacts : flown in doubles at most.
     rough : the relative error of a velocity in doubles. drift : the largest relative distance from gamma.
-    spare : digits beyond those asked for. steps : of Newton's method. least : flights that show how balls spread.
+    spare : digits beyond those asked for.
     """
 
     terms: int = 12
@@ -50,8 +50,6 @@ class GuideSettings:
     rough: float = 1e-14
     drift: float = 1e-3
     spare: int = 4
-    steps: int = 8
-    least: int = 6
 
 
 SETTINGS = GuideSettings()
@@ -130,7 +128,8 @@ def spread(flow: AnalyticFlow, tau: Expression, v: Fraction, guide: Guide, digit
         time, speed = time + hit.time, -flow.r * hit.velocity
         widths.append(-speed.rel_accuracy_bits())
     half = len(widths) // 2
-    if len(widths) < SETTINGS.least:
+    # so many flights show how balls spread
+    if len(widths) < 6:
         return 0
     by_impact = float(widths[-1] - widths[half]) / (len(widths) - 1 - half)
     return ceil((digits + 1) * log2(10) / guide.growth * by_impact)
@@ -140,7 +139,8 @@ def newton(flow: AnalyticFlow, tau: Expression, rough: float, guide: Guide, digi
     """The velocity on gamma to so many digits, by Newton's method on the miss after the flights of a guide."""
     start, v = evaluate(tau, {}, flow.balls).mid(), flow.number(Fraction(rough))
     small, last = Fraction(1, 10 ** (digits + SETTINGS.spare - 1)), None
-    for _ in range(SETTINGS.steps):
+    # steps of Newton's method
+    for _ in range(8):
         miss = _miss(flow, start, v, guide)
         if miss is None:
             return None
@@ -179,7 +179,6 @@ class BallOrbits:
     impacts : flown at most; r = 0.999 to 30 digits takes 35 000. bits : of the balls at most, per digit asked for.
     early : the velocity at which bounds are next made, over that at which they are expected to be narrow enough.
     spare : bits beside the digits. wide : the window on which the rest is bounded, in units of its first guess.
-    stage, stages, secants : impacts along gamma in the first search for the threshold, its growth, steps at each.
     """
 
     impacts: int = 200_000
@@ -187,9 +186,6 @@ class BallOrbits:
     early: int = 2
     spare: int = 64
     wide: int = 3
-    stage: int = 6
-    stages: float = 1.5
-    secants: int = 6
 
 
 ORBITS = BallOrbits()
@@ -375,14 +371,15 @@ def searched(
     rate = float(contact[1].mid())
     forgotten = max(rate**2 / multiplier_across(contact[0], rate), 1e-300)  # by each impact, of the error in the cut
     most = ceil((digits + 3) * log(10) / -log(forgotten))
-    v, impacts, step = rough, ORBITS.stage, Fraction(1, 10**12)
+    # impacts along gamma in the first search for the threshold
+    v, impacts, step = rough, 6, Fraction(1, 10**12)
     while True:
         impacts = min(impacts, most)
         reached = max(Fraction(forgotten**impacts), Fraction(1, 10 ** (digits + 3))) / 10
         root = _secant(partial(missed, impacts), v, v * step, v * reached, balls)
         if root is None or impacts == most:
             return root
-        impacts, step = ceil(impacts * ORBITS.stages), max(abs(root - v) / v / 10**4, Fraction(1, 10 ** (2 * digits)))
+        impacts, step = ceil(impacts * 1.5), max(abs(root - v) / v / 10**4, Fraction(1, 10 ** (2 * digits)))
         v = root
 
 
@@ -391,7 +388,8 @@ def _secant(
 ) -> Fraction | None:
     """A zero of miss near v, to `small`; None when it is not defined there, or these balls do not give it so well."""
     other, value = v + step, miss(v)
-    for _ in range(ORBITS.secants):
+    # steps of each search
+    for _ in range(6):
         beyond = miss(other)
         if value is None or beyond is None or not abs(beyond - value) > 0:
             return None

@@ -47,16 +47,11 @@ class FitSettings:
     held: float = 1e-9
     # noise that is taken for that of what was measured at least, beside its size
     exact: float = 1e-12
-    # residuals of a flight, beside those of most flights, from which on it is left out
-    outlying: float = 3.0
     # impacts that may be missing between two measured ones, and by what part of a flight its time may be missed
     missing: int = 8
     off: float = 0.25
     # velocities below so many standard deviations are chatter that noise hides
     slow: float = 10.0
-    # of sampled motions: samples beside a corner that lines are laid through; how low it is, of the whole height
-    beside: int = 3
-    corner: float = 0.1
     # change of slope at a corner beside that between lines farther away, which is 0.4 where x is a parabola
     sharp: float = 0.7
 
@@ -223,11 +218,12 @@ class _Motion:
 
     def states(self) -> Array:
         """Impacts at the corners of x(t)."""
-        t, x, n = self.t, self.x, SETTINGS.beside
+        # lines are laid through so many samples beside a corner, which is low: in a tenth of the whole height
+        t, x, n = self.t, self.x, 3
         low, high = x.min(), x.max()
         states = []
         for i in range(2 * n, t.size - 2 * n):
-            if x[i] > x[i - n : i + n + 1].min() or x[i] > low + SETTINGS.corner * (high - low):
+            if x[i] > x[i - n : i + n + 1].min() or x[i] > low + 0.1 * (high - low):
                 continue
             lines = [
                 np.polyfit(t[begin : begin + n] - t[i], x[begin : begin + n], 1)
@@ -252,8 +248,8 @@ class _Motion:
             i = int(flight[at])
             tau, v = run.states[i].tolist()
             end = run.moving.end(run.values, tau, v, float(self.t[at]) - tau)
-            off[row] = self.x[at] - run.clearance - end.place[0]
-            by_numbers = end.by_numbers[:, 0] + run.walls
+            off[row] = self.x[at] - run.values.get(CLEARANCE, as_float(run.moving.osc.clearance)) - end.place[0]
+            by_numbers = end.by_numbers[:, 0] + [float(name == CLEARANCE) for name in run.moving.over]
             rows += [row] * (2 + by_numbers.size)
             slots += [2 * i, 2 * i + 1, *range(run.size - by_numbers.size, run.size)]
             entries += [end.by_tau[0] - end.by_time[0], end.by_v[0], *by_numbers]
@@ -302,16 +298,6 @@ class _Run:
         """The numbers by name."""
         return dict(zip(self.moving.over, self.numbers.tolist(), strict=True))
 
-    @property
-    def clearance(self) -> float:
-        """The place of the wall."""
-        return self.values.get(CLEARANCE, as_float(self.moving.osc.clearance))
-
-    @property
-    def walls(self) -> Array:
-        """The derivative of the place of the wall by each number."""
-        return np.array([float(name == CLEARANCE) for name in self.moving.over])
-
     def _between(self, state: Array, following: Array) -> list[Array] | None:
         """The impacts that are missing between two measured ones; None where the first does not lead to the second."""
         (tau, v), gap = state.tolist(), float(following[0] - state[0])
@@ -341,7 +327,8 @@ class _Run:
         flight = np.searchsorted(self.states[:, 0], t) - 1
         counts = np.bincount(flight, minlength=len(self.states))
         sizes = np.sqrt(np.bincount(flight, off[:, 0] ** 2, len(self.states)) / np.maximum(counts, 1))
-        far = np.flatnonzero(sizes > SETTINGS.outlying * np.median(sizes[counts > 0]))
+        # flights with such residuals, beside those of most flights, are left out
+        far = np.flatnonzero(sizes > 3.0 * np.median(sizes[counts > 0]))
         self.links = np.setdiff1d(self.links, far)
         self.cut = sorted({*self.cut, *(np.searchsorted(self.seen, far, side="right") - 1).tolist()})
         return bool(far.size)

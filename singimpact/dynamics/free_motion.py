@@ -36,9 +36,8 @@ class FreeSettings:
     level: float = 1e-6  # of its distance; nearer to 1 all orbits close
     # distance from an attracting rest off the wall, in units of its height
     near: float = 1e-2
-    # steps of Newton's method, and a step in units of the bracket after which it has converged
+    # steps of Newton's method
     newton: int = 30
-    root: float = 1e-12
 
 
 SETTINGS = FreeSettings()
@@ -169,7 +168,8 @@ def _minima(model: Oscillator, times: Array, way: Array) -> Array:
             aim = later - low[:, 1] / acceleration_off_wall(model, *low.T)
         inside = (aim >= ends[0]) & (aim <= ends[1])
         later, before = np.where(inside, aim, (ends[0] + ends[1]) / 2), later
-        if (np.abs(later - before) <= SETTINGS.root * width).all():
+        # the step, in units of the bracket, after which the method has converged
+        if (np.abs(later - before) <= 1e-12 * width).all():
             break
     out[which, slot, 0], out[which, slot, 1] = grid[which, index] + later, low[:, 0]
     return out

@@ -17,8 +17,6 @@ from singimpact.surface.curve import Window, distances
 class GrowthSettings:
     """Settings of the growth of curves; lengths are in units of the resolution of the window."""
 
-    start: int = 100  # distance of two points of the fundamental piece
-    least: int = 4  # points of the fundamental piece at least
     longest: float = 8.0  # maximal chord length
     bend: float = 0.5  # deviation of a vertex from the chord of its neighbours that is refined
     jump: float = 8.0  # distance of neighbours in s beyond which there is a discontinuity between them
@@ -26,7 +24,6 @@ class GrowthSettings:
     most: int = 4000  # points of a piece at most
     distinct: float = 0.25  # distance from the generation before below which the growth ends
     generations: int = 60  # images at most
-    halvings: int = 60  # of s at a discontinuity
 
 
 SETTINGS = GrowthSettings()
@@ -81,7 +78,8 @@ class Carried:
 
     def first(self, inner: float, outer: float) -> Piece:
         """The fundamental piece between two values of s."""
-        count = max(SETTINGS.least, round(1 / self.window.resolution) // SETTINGS.start + 1)
+        # points of the fundamental piece, 100 resolutions apart
+        count = max(4, round(1 / self.window.resolution) // 100 + 1)
         s = np.linspace(inner, outer, count)
         return Piece(s, self.start(s), 0)
 
@@ -145,7 +143,8 @@ class Carried:
         places = [points[at].copy(), points[at + 1].copy()]
         low = SETTINGS.graze * self.window.resolution * self.window.sides[1]
         more = [(s, points)]
-        for _ in range(SETTINGS.halvings):
+        # halvings of s at a discontinuity
+        for _ in range(60):
             middle = (ends[0] + ends[1]) / 2
             apart = (middle != ends[0]) & (middle != ends[1])
             # an end at rest is where a flight grazes: nearer to it flights are dear, and the curve is no longer

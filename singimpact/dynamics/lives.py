@@ -43,8 +43,6 @@ class LifeSettings:
     same: float = 1e-12
     # impacts after which each orbit's time is taken in again
     block: int = 64
-    # flights of an orbit that the impact map decides one by one; an orbit that goes to a graze has no end of them
-    decided: int = 16
 
 
 SETTINGS = LifeSettings()
@@ -364,7 +362,8 @@ class Lives:
 
     def _decide(self, index: int, code: int) -> None:
         """One flight by the impact map, which says what became of it."""
-        if self._decided.get(index, 0) >= SETTINGS.decided or not np.isfinite(self.v[index]):
+        # an orbit that goes to a graze has no end of such flights
+        if self._decided.get(index, 0) >= 16 or not np.isfinite(self.v[index]):
             self.status[index] = Status.unresolved
             return
         here = self.members.side(int(self.which[index]), int(self.wall[index]))

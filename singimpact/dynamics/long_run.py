@@ -56,9 +56,8 @@ def lift_offs(model: Oscillator) -> tuple[float, ...]:
     >>> [round(tau, 6) for tau in lift_offs(Oscillator("x", "cos(2*t)", "0.3", "1/2"))]
     [2.508541]
     """
-    if model.period is None:
-        return ()
-    return tuple(point.tau for point in tangency_points(model) if point.kind == "gamma")
+    points = () if model.period is None else tangency_points(model)
+    return tuple(point.tau for point in points if point.kind == "gamma")
 
 
 def lift_offs_of_walls(model: Oscillator) -> tuple[tuple[float, int], ...]:

@@ -36,24 +36,14 @@ class LyapunovSettings:
     # stretches of one block of an orbit whose products are formed side by side, and impacts of one at least
     stretches: int = 256
     least: int = 16
-    # groups of stretches whose spread gives the standard error
-    groups: int = 32
     # impacts of a transient at most: a chaotic one of x'' + x = cos 3.3t, c = 0.03, r = 0.95 lasts 3800 (median)
     transient: int = 20_000
-    # impacts between two looks whether the orbit has settled, doubled each time
-    look: int = 500
     # longest period, and relative distance of states that repeat
     period: int = 64
     close: float = 1e-9
-    # impacts in which the vector that is followed turns into its direction
-    turn: int = 100
     # how often the impacts are flown anew when their halves differ by more than so many standard errors
     again: int = 3
     apart: float = 4.0
-    # rests after which an orbit is said to rest again and again, where the forcing never repeats
-    rests: int = 8
-    # roundings of the growth in an impact
-    rounded: float = 4.0
 
 
 SETTINGS = LyapunovSettings()
@@ -355,7 +345,8 @@ class _Run:
     def over(self) -> Array:
         """Orbits that rest again and again, or for ever."""
         lives = self.lives
-        often = np.isnan(lives.members.period[lives.which]) & (lives.rests >= SETTINGS.rests)
+        # where the forcing never repeats, so many rests are rests again and again
+        often = np.isnan(lives.members.period[lives.which]) & (lives.rests >= 8)
         return np.asarray((lives.cycle > 0) | (lives.status == Status.sticks) | often)
 
     def fly(self, most: Array, keep: bool) -> Stretch | None:
@@ -376,7 +367,8 @@ class _Run:
 
     def settled(self, impacts: int) -> Array:
         """The exponents of what orbits settle to."""
-        block, open_ = SETTINGS.look, np.ones(self.size, bool)
+        # impacts between two looks whether the orbit has settled, doubled each time
+        block, open_ = 500, np.ones(self.size, bool)
         while open_.any():
             count = np.where(open_, np.minimum(block, SETTINGS.transient - self.before), 0)
             stretch = self.fly(count, keep=False)
@@ -388,7 +380,8 @@ class _Run:
         result, open_ = np.zeros((self.size, 14)), np.ones(self.size, bool)
         for _ in range(SETTINGS.again):
             self.begin(open_)
-            self.fly(np.where(open_, min(SETTINGS.turn, impacts), 0), keep=True)
+            # impacts in which the vector that is followed turns into its direction
+            self.fly(np.where(open_, min(100, impacts), 0), keep=True)
             self.begin(open_ & (self.lives.status == 0) & ~self.over)
             self.fly(np.where(open_, impacts, 0), keep=True)
             result[open_] = self.table()[open_]
@@ -457,7 +450,8 @@ def _halves_agree(rows: Array) -> Array:
 
 def exponents_of(rows: Array, time: Array) -> tuple[Array, Array]:
     """Exponents per unit of time and their standard errors, by groups of stretches of equal number, shapes (2, n)."""
-    groups = min(SETTINGS.groups, len(rows))
+    # groups of stretches whose spread gives the standard error
+    groups = min(32, len(rows))
     parts = np.array([group.sum(axis=0) for group in np.array_split(rows, groups)])
     with np.errstate(all="ignore"):  # where impacts leave no velocity all areas are -inf
         growth = np.stack([parts[:, 1], parts[:, 2] - parts[:, 1]])
@@ -467,7 +461,8 @@ def exponents_of(rows: Array, time: Array) -> tuple[Array, Array]:
             # of a ratio of sums: what the growth of a group differs by from its time at the mean rate
             off = growth - parts[:, 0] * exponents[:, None]
             error = np.sqrt((off**2).sum(axis=1) * groups / (groups - 1)) / time
-            error += SETTINGS.rounded * EPSILON * rows[:, 3].sum(axis=0) / time
+            # roundings of the growth in an impact
+            error += 4.0 * EPSILON * rows[:, 3].sum(axis=0) / time
             error[np.isneginf(exponents)] = 0.0
     order = np.argsort(-exponents, axis=0, kind="stable")
     return np.take_along_axis(exponents, order, axis=0), np.take_along_axis(error, order, axis=0)

@@ -47,9 +47,8 @@ COLUMNS = 5
 class RegionSettings:
     """When the class of an orbit is decided."""
 
-    # impacts between two looks, how many these are, and impacts between later ones, at longer periods
+    # impacts between two looks, and between later ones, at longer periods
     block: int = 48
-    early: int = 5
     last: int = 192
     # longest period that is looked for, in impacts; a look has three of them
     period: int = 64
@@ -66,8 +65,6 @@ class RegionSettings:
     neighbour: float = 1e-14
     # impacts over which a number is taken, after as many
     measured: int = 600
-    # impacts after which an orbit is still there
-    stays: int = 16
     # impacts from which on a neighbour is followed, its relative distance, and impacts after which it is set back
     chaos: int = 160
     apart: float = 1e-12
@@ -76,8 +73,6 @@ class RegionSettings:
     looks: int = 6
     sure: float = 4.0
     least: float = 0.01
-    # longest word of walls that is kept
-    letters: int = 48
 
 
 SETTINGS = RegionSettings()
@@ -127,9 +122,7 @@ class Regions(ClassGrid):
     def as_dict(self) -> dict[str, Any]:
         """The axes; for each place its class, or the number."""
         grid = {self.over[0]: self.x, self.over[1]: self.y}
-        if self.values is not None:
-            return grid | {self.of: self.values}
-        return grid | self.named_codes
+        return grid | (self.named_codes if self.values is None else {self.of: self.values})
 
     def arrays(self) -> dict[str, tuple[tuple[str, ...], Array]]:
         """Names of axes and values."""
@@ -305,7 +298,8 @@ class _Settling:
     def rows(self) -> Array:
         """The classes of all."""
         lives = self.lives
-        looks = chain(repeat(SETTINGS.block, SETTINGS.early), repeat(SETTINGS.last))
+        # the first looks come early, the later ones tell longer periods apart
+        looks = chain(repeat(SETTINGS.block, 5), repeat(SETTINGS.last))
         for look in count(1):
             going = np.flatnonzero((self.kind < 0) & (lives.flown < self.impacts))
             if not going.size:
@@ -397,7 +391,8 @@ class _Settling:
         """Whether orbits are where they were after some more turns: beside a saddle they have left it."""
         lives = self.lives
         phase, v = lives.phase[at].copy(), lives.v[at].copy()
-        self._advanced(n * -(-SETTINGS.stays // n), at)
+        # impacts after which an orbit is still there
+        self._advanced(n * -(-16 // n), at)
         gone = (lives.phase[at] - phase) / lives.unit[at]
         away = np.maximum(np.abs(gone - np.rint(gone)), np.abs(lives.v[at] - v) / self.fast[at])
         return np.asarray((away < 2 * SETTINGS.near) & (lives.status[at] == 0))
@@ -453,7 +448,8 @@ def _comes_there(turns: Array, speeds: Array, n: int) -> Array:
 
 def _word(upper: Array) -> int:
     """The least rotation of the walls of an orbit's impacts, as bits below a leading 1; 0 of a long one."""
-    if upper.size > SETTINGS.letters:
+    # the longest word that is kept
+    if upper.size > 48:
         return 0
     bits = "".join("01"[int(side)] for side in upper.tolist())
     return int("1" + min(bits[i:] + bits[:i] for i in range(len(bits))), 2)

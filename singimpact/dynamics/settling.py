@@ -52,7 +52,6 @@ class SettlingSettings:
     # impacts before the first test, in addition to those that chatter needs to become so slow
     transient: int = 40
     block: int = 6  # impacts between two tests
-    sample: int = 24  # undecided orbits that are tested for a new attractor after each block
     # of a Taylor step: at 1e-6 no class of 18 000 states changes; a flight costs a quarter less than at full accuracy
     tolerance: float = 1e-10
     limit: int = 3000  # impacts of the first stage; r = 0.99 needs 2000
@@ -69,8 +68,6 @@ class SettlingSettings:
     neighbour: float = 1e-15
     watched: int = 10
     parted: float = 1e-2
-    # without a clock: turns of the fastest motion after which a flight is looked at as one without impact
-    free: int = 32
 
 
 SETTINGS = SettlingSettings()
@@ -98,7 +95,8 @@ class Study:
     @property
     def horizon(self) -> float | None:
         """Time after which a flight of a model without a clock is looked at; None for the package default."""
-        return None if self.phases.clocked else SETTINGS.free * self.phases.unit
+        # turns of the fastest motion after which a flight is looked at as one without impact
+        return None if self.phases.clocked else 32 * self.phases.unit
 
 
 def classify(study: Study, tau: Array, v: Array) -> Array:
@@ -271,7 +269,8 @@ class _Run:
     def _search(self, places: Array, chosen: Array, most: int = ATTRACTORS.most_impacts) -> Array:
         """The places with those of attractors that a sample of the chosen open states has reached."""
         study, at = self.study, self.open
-        sample = chosen[:: max(chosen.size // SETTINGS.sample, 1)]
+        # orbits that are tested for a new attractor
+        sample = chosen[:: max(chosen.size // 24, 1)]
         before = len(self.known)
         self.known += new_attractors(study.model, self.tau[at[sample]], self.v[at[sample]], study.fast, most)
         again = caught(self.known[before:], study.model, self.tau[at], self.v[at], study.fast)

@@ -27,11 +27,7 @@ class ResponseSettings:
     confirmed: int = 2048
     same: float = 1e-6
     different: float = 1e-3
-    # distance of orbits that are followed as one on the way
-    merged: float = 1e-12
     impacts: int = 10**6  # there, at most
-    # lift-offs between two looks, of an orbit that comes to rest again and again
-    rests: int = 2
 
 
 SETTINGS = ResponseSettings()
@@ -111,7 +107,8 @@ class Responses:
         order = open_[np.lexsort((self.v[open_], self.tau[open_]))]
         states = self.tau[order], self.v[order]
         step = apart([c[1:] for c in states], [c[:-1] for c in states], self.study.phases, self.study.fast)
-        group = np.concatenate([[0], np.cumsum(step > SETTINGS.merged)])[: order.size]
+        # nearer orbits are followed as one
+        group = np.concatenate([[0], np.cumsum(step > 1e-12)])[: order.size]
         target = np.arange(self.tau.size)
         target[order] = order[np.searchsorted(group, group)]
         return np.asarray(target[leader])
@@ -120,7 +117,8 @@ class Responses:
         """Whether the rows of orbits are decided, or their impacts used up."""
         first = first[np.isnan(self.rows[first, 0])]
         codes = np.full(first.size, RESTING)
-        flying = np.flatnonzero(rests[first] < SETTINGS.rests)
+        # lift-offs between two looks, of an orbit that comes to rest again and again
+        flying = np.flatnonzero(rests[first] < 2)
         at = first[flying]
         sign = growth(self.study.model, self.tau[at], self.v[at], self.study.fast)
         codes[flying] = np.select([sign < 0, sign > 0], [RESPONSE, CHAOS], OTHER)

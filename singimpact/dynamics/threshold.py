@@ -50,7 +50,6 @@ class Search:
     elastic: int = 8
     edges: int = 40  # bisections towards velocities whose side doubles do not decide
     widest: float = 1e-3  # relative error of v at most; the status is `unresolved` beyond it
-    rounds: int = 100  # steps of Newton's method with digits=, each of which gives ten of them
     # relative width of the bracket in which Newton's method starts; the series of gamma applies at a distance ten times
     # larger
     coarse: float = 2.0**-12
@@ -59,9 +58,6 @@ class Search:
     rough: float = 2.0**-5
     steps: int = 8
     widths: tuple[float, ...] = (2 * EPSILON, 16 * EPSILON, 256 * EPSILON)
-    # launch speeds up to gamma, evenly spaced, whose chatter is looked at for impacts with a second wall
-    speeds: int = 64
-    halvings: int = 60  # of the step in which such an impact appears
     over: float = 1e-3  # a chatter is over for this when less is left of it, of the time on which a_c changes
 
 
@@ -181,12 +177,14 @@ def _between_walls(osc: Oscillator, phase: Expression, alone: Threshold) -> Thre
         top = float(np.sqrt(-2 * acceleration(osc, np.array([tau]))[0] * gap_of(osc)[0]))
         while not is_met(top) and top < 1e12:
             top *= 2
-    speeds = np.linspace(0.0, top, SEARCH.speeds + 1).tolist()
+    # launch speeds up to gamma whose chatter is looked at for impacts with a second wall
+    speeds = np.linspace(0.0, top, 65).tolist()
     first = next((at for at, v in enumerate(speeds[1:], start=1) if is_met(v)), None)
     if first is None:
         return alone
     low, high = speeds[first - 1], speeds[first]
-    for _ in range(SEARCH.halvings):
+    # halvings of the step in which such an impact appears
+    for _ in range(60):
         middle = (low + high) / 2
         if not low < middle < high:
             break
@@ -366,7 +364,8 @@ def _refined(osc: Oscillator, phase: Any, rough: Threshold, end: ContactZero, di
         bits, change = mp.prec + 32, mp.mpf(float(rough.error))
         reach, balls = _series(osc, end, bits)
         stop, g = _middle(end.moved(bits), mp), [_middle(ball, mp) for ball in balls] if reach else []
-        for _ in range(SEARCH.rounds if reach else 0):
+        # steps of Newton's method, each of which gives ten digits
+        for _ in range(100 if reach else 0):
             tau, speed, column = start, v, np.array([0.0, 1.0])
             # as far as the orbit is beside gamma for all that is known of v
             while stop - tau >= reach and 0 < abs(column[1] * change) < speed / 100:

@@ -189,11 +189,7 @@ def recognised(w: Jet, sign_of: Callable[[Any], int] = sign) -> str:
         return "fold"
     if at(1, 1):
         return "cusp" if at(0, 3) else "swallowtail" if at(0, 4) else "degenerate"
-    return _beaks_or_lips(w, sign_of) if at(0, 3) else "degenerate"
-
-
-def _beaks_or_lips(w: Jet, sign_of: Callable[[Any], int]) -> str:
-    """By the Hessian of w_t, whose half is 3 w_03 t^2 + 2 w_12 u t + w_21 u^2."""
+    # the Hessian of w_t, whose half is 3 w_03 t^2 + 2 w_12 u t + w_21 u^2
     third, mixed, slope = (w.coefficient(key) for key in ((0, 3), (1, 2), (2, 1)))
-    definite = sign_of(third * slope * 3 - mixed * mixed)
+    definite = sign_of(third * slope * 3 - mixed * mixed) if at(0, 3) else 0
     return "lips" if definite > 0 else "beaks" if definite < 0 else "degenerate"

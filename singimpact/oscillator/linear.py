@@ -101,9 +101,7 @@ def _waves(tree: Expression, factor: Expression | None = None) -> tuple[Expressi
         moving = [operand for operand in tree.factors if "t" in names_in(operand)]
         rest = [operand for operand in tree.factors if operand is not moving[0]]
         return _waves(moving[0], multiply(factor, *rest)) if len(moving) == 1 else None
-    if isinstance(tree, Call) and tree.function in ("sin", "cos"):
-        return _wave(tree, factor)
-    return None
+    return _wave(tree, factor) if isinstance(tree, Call) and tree.function in ("sin", "cos") else None
 
 
 def _wave(tree: Call, factor: Expression) -> tuple[Expression, list[Harmonic]] | None:

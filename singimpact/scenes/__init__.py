@@ -14,8 +14,7 @@ if TYPE_CHECKING:
 
 _FILES = {
     "basins_picture": "class_colors draw_basins draw_first_chatter",
-    "border_picture": "draw_border",
-    "branch_picture": "bifurcation_sheet",
+    "branch_picture": "bifurcation_sheet draw_border",
     "clearance_frames": "clearance_film",
     "drawing": "plot",
     "explore": "CURVES explore_page",

@@ -1,20 +1,21 @@
-"""Pictures of branches of periodic orbits, of their events in two numbers, and of bifurcation diagrams below them."""
+"""Pictures of branches of periodic orbits, their events in two numbers, bifurcation diagrams, and cascades."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from singimpact.algebra.numbers import Array
+from singimpact.branches.border import BorderOrbit
 from singimpact.branches.branch import Branch
+from singimpact.branches.cascade import Cascade, CascadeWindow
 from singimpact.branches.event_curve import EventCurve
 from singimpact.branches.events import KINDS, Event, kind_of
 from singimpact.branches.solutions import orbit_period
 from singimpact.dynamics.bifurcation_diagram import Bifurcation
-from singimpact.inputs import refuse
+from singimpact.inputs import InputError, refuse
 from singimpact.scenes.label_places import legend_below, legend_entries, legend_mark, place_labels
 from singimpact.scenes.style import (
     BLACK,
@@ -25,6 +26,7 @@ from singimpact.scenes.style import (
     LETTERS,
     LINES,
     OPEN,
+    ORANGE,
     VERMILLION,
     orbit_color,
     orbit_width,
@@ -43,22 +45,10 @@ HEIGHTS = {
 WORDS = {"stable": "stable", "unstable": "unstable", "virtual": "virtual: goes through the wall"}
 
 
-@dataclass(frozen=True)
-class BranchPictureSettings:
-    """Settings of a picture of branches."""
-
-    # more events than this, or any whose name would hide a curve, are named in the legend, not beside their points
-    named: int = 8
-    # virtual parts are shown so far beyond the visible ones, of their height
-    beyond: float = 0.35
-    # free space around the curves
-    space: float = 0.06
-    # of markers of events, and at least in the legend of a sheet, in points
-    mark: float = 5.5
-    dot: float = 4.0
-
-
-SETTINGS = BranchPictureSettings()
+# Virtual parts are shown so far beyond the visible ones, of their height; free space around the curves
+BEYOND, SPACE = 0.35, 0.06
+# Of markers of events, in points
+MARK = 5.5
 
 
 def draw_branches(branches: Sequence[Branch], axes: Axes, height: str = "v") -> Axes:
@@ -183,7 +173,7 @@ def _rebounds(v: Array, wall: Array | None) -> Array:
 def _limits(axes: Axes, drawn: list[_Drawn], shown: str) -> None:
     """The picture is filled by the motions that occur; virtual parts are shown next to them."""
     numbers = np.concatenate([line.number for line in drawn])
-    pad = SETTINGS.space / 2 * (np.ptp(numbers) or 1.0)
+    pad = SPACE / 2 * (np.ptp(numbers) or 1.0)
     if axes.get_autoscalex_on():
         axes.set_xlim(numbers.min() - pad, numbers.max() + pad)
     if not axes.get_autoscaley_on():
@@ -195,17 +185,18 @@ def _limits(axes: Axes, drawn: list[_Drawn], shown: str) -> None:
     seen = np.concatenate([line.heights[line.classes != "virtual"].ravel() for line in drawn])
     seen = np.append(seen, 0.0) if seen.size else every
     size = float(np.ptp(seen)) or float(np.abs(every).max()) or 1.0
-    low = max(float(every.min()), float(seen.min()) - SETTINGS.beyond * size)
-    high = min(float(every.max()), float(seen.max()) + SETTINGS.beyond * size)
-    axes.set_ylim(low - SETTINGS.space * size, high + SETTINGS.space * size)
+    low = max(float(every.min()), float(seen.min()) - BEYOND * size)
+    high = min(float(every.max()), float(seen.max()) + BEYOND * size)
+    axes.set_ylim(low - SPACE * size, high + SPACE * size)
 
 
 def _draw_marks(axes: Axes, marks: list[Any]) -> set[str]:
     """Markers with their names, if all of these have clear places and are few; otherwise the names for the legend."""
     for (number, height, kind), _ in marks:
-        axes.plot(number, height, kind_of(kind).marker, **OPEN, markersize=SETTINGS.mark, zorder=6, gid=kind)
+        axes.plot(number, height, kind_of(kind).marker, **OPEN, markersize=MARK, zorder=6, gid=kind)
     names = [(number, height, name) for (number, height, _), name in marks if name]
-    if len(names) > SETTINGS.named:
+    # more events, or any whose name would hide a curve, are named in the legend, not beside their points
+    if len(names) > 8:
         return {name for _, _, name in names}
     written, clear = place_labels(axes, names)
     if clear:
@@ -227,7 +218,7 @@ def _legend(axes: Axes, drawn: list[_Drawn], kinds: list[str], names: set[str]) 
     for kind in kinds:
         style, width = LINES[kind]
         entries.setdefault(WORDS[kind], Line2D([], [], color=BLACK, linestyle=style, linewidth=width))
-    entries |= {kind.label: legend_mark(kind.marker, SETTINGS.mark) for kind in KINDS if kind.label in names}
+    entries |= {kind.label: legend_mark(kind.marker, MARK) for kind in KINDS if kind.label in names}
     return legend_below(axes, entries, min(4, len(entries)))
 
 
@@ -257,7 +248,7 @@ def draw_event_curves(curves: Sequence[EventCurve], axes: Axes) -> Axes:
     if fresh:
         across, up = curves[0].over
         axes.set(xlabel=LETTERS.get(across, across), ylabel=LETTERS.get(up, up))
-        axes.margins(SETTINGS.space)
+        axes.margins(SPACE)
     marked = _apart([(*point.parameters, point.kind) for curve in curves for point in curve.special], axes)
     for x, y, _ in marked:
         axes.plot(x, y, "D", **OPEN, markersize=5, zorder=6, gid="special point")
@@ -314,7 +305,7 @@ def bifurcation_sheet(diagram: Bifurcation, branches: Sequence[Branch] = (), fig
     look: dict[str, Any] = {"ncols": 4, "frameon": False, "fontsize": "small"}
     for handle in figure.legend(entries.values(), list(entries), loc="outside lower center", **look).legend_handles:
         if isinstance(handle, Line2D):
-            handle.set_markersize(max(handle.get_markersize(), SETTINGS.dot))
+            handle.set_markersize(max(handle.get_markersize(), 4.0))
     return figure
 
 
@@ -361,3 +352,101 @@ def draw_bifurcation(diagram: Bifurcation, axes: Any, height: str = "v") -> Any:
     if len(axes.get_legend_handles_labels()[1]) > 1:
         axes.legend(loc="best", fontsize="small", markerscale=2)
     return axes
+
+
+# The cascade beside a border orbit: impacts of the released orbit, and what attracts it, over the distance.
+
+CASCADE_WORDS = {
+    "same": "attractor that closes at each return",
+    "more": "attractor that closes after more returns",
+    "rest": "attractor with complete chatter",
+    "none": "no periodic attractor seen",
+}
+CASCADE_MARKS = {"same": ("o", BLUE), "more": ("D", ORANGE), "rest": ("^", VERMILLION), "none": (".", GREY)}
+
+
+def draw_border(border: BorderOrbit, axes: Any, below: Any = None) -> Any:
+    """Draw the cascade of a border orbit and return the axes.
+
+    Parameters
+    ----------
+    axes : for the number of impacts a return. below : for the size of the larger multiplier, or None.
+    """
+    cascade = border.cascade
+    if len(cascade) < 2:
+        raise InputError(f"this border orbit has no cascade to draw: {'; '.join(cascade.notes)}")
+    # an orbit is flown until it settles at so many places of each window; many windows have smaller marks
+    samples, size = cascade.sampled(8), 3.6 * min(1.0, 35 / len(cascade))
+    _stairs(cascade, axes)
+    for kind, (marker, color) in CASCADE_MARKS.items():
+        rows = [(sample.distance, _height(sample, border)) for sample in samples if _kind(sample, border) == kind]
+        if rows:
+            axes.plot(
+                *np.array(rows).T,
+                marker,
+                color=color,
+                markersize=size,
+                linestyle="none",
+                markeredgewidth=0.9,
+                label=CASCADE_WORDS[kind],
+                zorder=4,
+            )
+    name = LETTERS.get(border.over, border.over)
+    axes.set_title(
+        f"border orbit at {name} = {float(border.parameter):.12g}, chatter completes {border.side}", fontsize="medium"
+    )
+    axes.set(xscale="log", ylabel="impacts a return")
+    if below is not None:
+        _multipliers(samples, border, below, size)
+        axes.tick_params(labelbottom=False)
+    last = axes if below is None else below
+    last.set_xlabel(f"distance from the border orbit in {name}")
+    legend_below(last, legend_entries(axes), 2, 0.18 if below is None else 0.3)
+    return axes
+
+
+def _stairs(cascade: Cascade, axes: Any) -> None:
+    """N of the released orbit, constant between edges."""
+    distance = np.array(cascade.distance, dtype=float)
+    # beyond the first edge one impact less, beyond the last one as long as the window before
+    places = np.concatenate([[distance[0] ** 2 / distance[1]], distance, [distance[-1] ** 2 / distance[-2]]])
+    axes.plot(
+        np.repeat(places, 2)[1:-1],
+        np.repeat(np.concatenate([[cascade.impacts[0] - 1], cascade.impacts]), 2),
+        color=BLACK,
+        linewidth=1.0,
+        zorder=2,
+        label="released orbit, up to the end of $\\gamma$",
+    )
+    axes.set_xlim(places[-1], places[0])
+
+
+def _kind(window: CascadeWindow, border: BorderOrbit) -> str:
+    if window.orbit is None:
+        return "none"
+    if window.orbit.kind == "chatter":
+        return "rest"
+    return "same" if window.orbit.k == round(border.period) else "more"
+
+
+def _height(window: CascadeWindow, border: BorderOrbit) -> float:
+    """Impacts of an attractor a return; those with rest, or none, at the released orbit's."""
+    orbit = window.orbit
+    if orbit is None or orbit.kind == "chatter":
+        return float(window.impacts)
+    return float(orbit.n) * border.period / orbit.k
+
+
+def _multipliers(samples: tuple[CascadeWindow, ...], border: BorderOrbit, axes: Any, size: float) -> None:
+    """The size of the larger multiplier; 0 of a superstable orbit has no place on this axis."""
+    for kind in ("same", "more"):
+        marker, color = CASCADE_MARKS[kind]
+        rows = [
+            (sample.distance, abs(complex(sample.orbit.multipliers[0])))
+            for sample in samples
+            if sample.orbit is not None and _kind(sample, border) == kind
+        ]
+        if rows:
+            axes.plot(*np.array(rows).T, marker, color=color, markersize=size, linestyle="none", zorder=4)
+    axes.axhline(1, color=BLACK, linewidth=0.6, zorder=1)
+    axes.set(yscale="log", ylim=(10**-2.5, 2), ylabel="larger multiplier, size")

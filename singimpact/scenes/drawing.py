@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
@@ -24,16 +23,15 @@ from singimpact.dynamics.basins_of_attraction import Basins
 from singimpact.dynamics.bifurcation_diagram import Bifurcation
 from singimpact.dynamics.fit import Fit
 from singimpact.dynamics.invariant_arcs import model_step
-from singimpact.dynamics.orbit import Orbit
+from singimpact.dynamics.orbit import Orbit, Section
 from singimpact.dynamics.regions import Regions
 from singimpact.dynamics.release_map import ReleaseMap
-from singimpact.dynamics.sampling import Section
 from singimpact.inputs import InputError, checked_keywords, refuse, takes_two_walls
 from singimpact.scenes.basins_picture import draw_basins, draw_both_sides, draw_regions
-from singimpact.scenes.border_picture import draw_border
 from singimpact.scenes.branch_picture import (
     bifurcation_sheet,
     draw_bifurcation,
+    draw_border,
     draw_branches,
     draw_event_curves,
 )
@@ -55,23 +53,8 @@ from singimpact.surface.impact_surface import ImpactSurface
 # Pictures of W^s and W^u of saddles, of points where they cross, of certified crossings and of horseshoes.
 
 
-@dataclass(frozen=True)
-class ManifoldPictureSettings:
-    """Marks of a picture of manifolds."""
-
-    saddle: float = 6.0
-    cut: float = 3.2
-    crossing: float = 4.5
-    # more discontinuities than this are not marked
-    marked: int = 60
-    # orbits whose impacts are all marked, the first ones
-    orbits: int = 1
-    # of a certified orbit: size of its impacts; those farther from the saddle than this are numbered, in sides
-    impact: float = 5.0
-    away: float = 0.1
-
-
-SETTINGS = ManifoldPictureSettings()
+# Sizes of the marks in a picture of manifolds, in points; of the impacts of a certified orbit
+SADDLE, CUT, CROSSING, IMPACT = 6.0, 3.2, 4.5, 5.0
 
 
 def draw_manifolds(manifolds: Sequence[Manifold], axes: Axes) -> Axes:
@@ -99,9 +82,9 @@ def draw_manifolds(manifolds: Sequence[Manifold], axes: Axes) -> Axes:
                 axes.plot(piece.points[:, 0] + turn, piece.points[:, 1], **line, zorder=4, gid=manifold.name)
             tau = np.mod(np.asarray(manifold.saddle.tau, dtype=float), manifold.window.x[1]) + turn
             v = np.asarray(manifold.saddle.v, dtype=float)
-            axes.plot(tau, v, "s", **OPEN, markersize=SETTINGS.saddle, zorder=6, gid="saddle")
+            axes.plot(tau, v, "s", **OPEN, markersize=SADDLE, zorder=6, gid="saddle")
             _cuts(manifold, turn, axes, entries)
-    entries["saddle"] = legend_mark("s", SETTINGS.saddle)
+    entries["saddle"] = legend_mark("s", SADDLE)
     return _dressed(axes, limits, entries, fresh)
 
 
@@ -123,17 +106,18 @@ def draw_crossings(crossings: Crossings, axes: Axes) -> Axes:
     kind = crossings[0].kind if crossings else "homoclinic"
     for crossing in crossings:
         dot: dict[str, Any] = {
-            "markersize": SETTINGS.crossing,
+            "markersize": CROSSING,
             "markeredgewidth": 0,
             "zorder": 6,
             "gid": f"{kind} point",
         }
         axes.plot(crossing.tau, crossing.v, "o", **filled, **dot)
-    for crossing in crossings[: SETTINGS.orbits]:
-        axes.plot(*crossing.states.T, "o", **hollow, markersize=1.8 * SETTINGS.crossing, zorder=7)
-        entries[f"impacts of the first {kind} orbit"] = legend_mark("o", 1.8 * SETTINGS.crossing, **hollow)
+    # impacts are all marked of the first orbit alone
+    for crossing in crossings[:1]:
+        axes.plot(*crossing.states.T, "o", **hollow, markersize=1.8 * CROSSING, zorder=7)
+        entries[f"impacts of the first {kind} orbit"] = legend_mark("o", 1.8 * CROSSING, **hollow)
     if crossings:
-        entries[f"{kind} points, one of each orbit"] = legend_mark("o", SETTINGS.crossing, **filled)
+        entries[f"{kind} points, one of each orbit"] = legend_mark("o", CROSSING, **filled)
     return _dressed(axes, limits, entries, fresh=False)
 
 
@@ -161,8 +145,9 @@ def draw_certified_crossing(crossing: EnclosedCrossing, axes: Axes) -> Axes:
     top = 1.2 * float(max(states[:, 1].max(), saddles[:, 1].max()))
     gaps = (states[:, None] - saddles) / [period, top]
     gaps[..., 0] -= np.rint(gaps[..., 0])
-    away = np.hypot(*gaps.transpose(2, 0, 1)).min(axis=1) > SETTINGS.away
-    axes.plot(*states.T, "o", color=pen.color, markersize=SETTINGS.impact, zorder=8)
+    # impacts farther from the saddles, in sides of the picture, are numbered
+    away = np.hypot(*gaps.transpose(2, 0, 1)).min(axis=1) > 0.1
+    axes.plot(*states.T, "o", color=pen.color, markersize=IMPACT, zorder=8)
     for number, spot in enumerate(states[away], start=1):
         axes.annotate(
             str(number),
@@ -174,11 +159,11 @@ def draw_certified_crossing(crossing: EnclosedCrossing, axes: Axes) -> Axes:
             color=pen.color,
             path_effects=[withStroke(linewidth=3, foreground=WHITE)],
         )
-    axes.plot(*saddles.T, "s", **OPEN, markersize=SETTINGS.saddle, zorder=8)
+    axes.plot(*saddles.T, "s", **OPEN, markersize=SADDLE, zorder=8)
     at = int(away[: crossing.index + 1].sum())
     words = f"impacts of a certified {crossing.kind} orbit, angle {float(crossing.angle.value):.4f} at {at}"
-    entries[words] = legend_mark("o", SETTINGS.impact, color=pen.color, markerfacecolor=pen.color)
-    entries["saddle"] = legend_mark("s", SETTINGS.saddle)
+    entries[words] = legend_mark("o", IMPACT, color=pen.color, markerfacecolor=pen.color)
+    entries["saddle"] = legend_mark("s", SADDLE)
     return _dressed(axes, ((0.0, period), (0.0, top)) if fresh else limits, entries, fresh, 2)
 
 
@@ -192,11 +177,12 @@ def _turns(limits: tuple[float, float], period: float, fresh: bool) -> list[floa
 
 def _cuts(found: Manifold, turn: float, axes: Axes, entries: dict[str, Any]) -> None:
     """The states at which manifolds are cut."""
-    if not found.cuts or len(found.cuts) > SETTINGS.marked:
+    # more discontinuities are not marked
+    if not found.cuts or len(found.cuts) > 60:
         return
     places = np.array([(cut.tau + turn, cut.v) for cut in found.cuts])
-    axes.plot(*places.T, "D", **OPEN, markersize=SETTINGS.cut, zorder=5, gid="cut by a graze")
-    entries["cut by a graze"] = legend_mark("D", SETTINGS.cut)
+    axes.plot(*places.T, "D", **OPEN, markersize=CUT, zorder=5, gid="cut by a graze")
+    entries["cut by a graze"] = legend_mark("D", CUT)
 
 
 # A certified horseshoe: the set round the saddle, and the images that cross it.
@@ -227,7 +213,7 @@ def draw_horseshoe(horseshoe: Horseshoe, axes: Axes) -> Axes:
     for points, color, style, words in looks:
         axes.fill(*points.T, color=color, alpha=0.12, linewidth=0)
         axes.plot(*points.T, color=color, linestyle=style, linewidth=1.4, label=words)
-    axes.plot(0, 0, "s", **OPEN, markersize=SETTINGS.saddle, label="saddle")
+    axes.plot(0, 0, "s", **OPEN, markersize=SADDLE, label="saddle")
     reach = 1.1 * float(np.abs(looks[0][0][:, 0]).max())
     axes.set(xlim=(-reach, reach), ylim=(-1.3, 1.3), ylabel="along $W^s$")
     digits, power = f"{float(home.radii[0]):.1e}".split("e")

@@ -22,18 +22,8 @@ class LabelSettings:
 
     distances: tuple[float, ...] = (9.0, 16.0, 26.0, 38.0, 52.0, 70.0, 90.0)
     directions: int = 16
-    # a name farther away than this is joined to its point by a line
-    joined: float = 12.0
-    # free space around a name
-    margin: float = 2.0
-    # points of one name that are nearer than this are named once
-    together: float = 8.0
     # curves are sampled so densely
     sample: float = 2.0
-    # between a point and its name no other curve should pass nearer to the straight line than this
-    clear: float = 1.5
-    # the point's own curves are near to it by themselves
-    own: float = 3.0
 
 
 SETTINGS = LabelSettings()
@@ -70,7 +60,8 @@ def place_labels(axes: Any, labels: Sequence[tuple[float, float, str]], size: fl
     for x, y, name in labels:
         spot = axes.transData.transform((x, y))
         gaps = [axes.transData.transform(label[:2]) - spot for label in inside if label[2] == name]
-        if box.padded(3.0).contains(*spot) and not any(np.hypot(*gap) < SETTINGS.together * pixel for gap in gaps):
+        # points of one name that are nearer than 8 points of 1/72 inch are named once
+        if box.padded(3.0).contains(*spot) and not any(np.hypot(*gap) < 8.0 * pixel for gap in gaps):
             inside.append((x, y, name))
     obstacles = [_curve_points(axes, SETTINGS.sample * pixel)]
     points = np.array([axes.transData.transform((x, y)) for x, y, _ in inside]).reshape(-1, 2)
@@ -97,7 +88,8 @@ def place_labels(axes: Any, labels: Sequence[tuple[float, float, str]], size: fl
         text.set_position(tuple(offset / pixel))
         written.append(text)
         length = np.hypot(*offset) - _reach(half, offset)
-        joined = bool(length > SETTINGS.joined * pixel)
+        # a name farther away than this is joined to its point by a line
+        joined = bool(length > 12.0 * pixel)
         text.arrow_patch.set_visible(joined)
         middle = point + offset
         if joined:
@@ -155,7 +147,8 @@ def _offset(
 ) -> tuple[Array, bool]:
     """The offset, in pixels, of the name's middle that hides least, of those the nearest; whether it hides nothing."""
     edges, pixel = space
-    margin = SETTINGS.margin * pixel
+    # free space around a name
+    margin = 2.0 * pixel
     best, least = np.array([0.0, SETTINGS.distances[0]]), np.inf
     nearby = obstacles[np.abs(obstacles - point).max(axis=1) < SETTINGS.distances[-1] * pixel]
     for rank, distance in enumerate(SETTINGS.distances):
@@ -166,9 +159,9 @@ def _offset(
             low, high = middle - half - margin, middle + half + margin
             hidden = int(((obstacles > low) & (obstacles < high)).all(axis=1).sum())
             crossed = sum(bool((low < other[2:]).all() and (high > other[:2]).all()) for other in taken)
-            between = _between(
-                point, direction, (SETTINGS.own * pixel, distance * pixel), nearby, SETTINGS.clear * pixel
-            )
+            # between a point and its name no other curve should pass so near to the straight line; the point's own
+            # curves are near to it by themselves
+            between = _between(point, direction, (3.0 * pixel, distance * pixel), nearby, 1.5 * pixel)
             outside = bool((low < edges[:2]).any() or (high > edges[2:]).any())
             cost = hidden + 3 * between + 50 * crossed + 100 * outside + 0.2 * rank
             if cost < least:

@@ -15,9 +15,8 @@ import numpy as np
 from singimpact.algebra.numbers import Array, as_float
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.dynamics.fit import Fit
-from singimpact.dynamics.orbit import Orbit, orbit as flown
+from singimpact.dynamics.orbit import Orbit, Section, orbit as flown
 from singimpact.dynamics.release_map import ReleaseMap
-from singimpact.dynamics.sampling import Section
 from singimpact.flights.flight_path import path
 from singimpact.inputs import InputError, checked_keywords, refuse, takes_two_walls, whole
 from singimpact.scenes.label_places import legend_below, legend_entries
@@ -31,24 +30,8 @@ if TYPE_CHECKING:
     from PIL import Image
 
 
-@dataclass(frozen=True)
-class OrbitStyle:
-    """The look of an orbit.
-
-    Parameters
-    ----------
-    points : points of a whole picture, shared out by length; a flight gets at least `fewest`.
-    tail : how far a last flight without return, or a rest without end, is drawn, as a part of the time before it.
-    many : above this number of impacts, or of states of a section, their marks get small.
-    """
-
-    points: int = 4000
-    fewest: int = 24
-    tail: float = 0.15
-    many: int = 40
-
-
-STYLE = OrbitStyle()
+# Points of a flight at least; above this number of impacts, or of states of a section, their marks get small
+FEWEST, MANY = 24, 40
 
 
 def draw_orbit(orbit: Orbit, axes: Axes, since: float | None = None) -> Axes:
@@ -90,7 +73,7 @@ def draw_periodic(orbit: PeriodicOrbit, axes: Axes) -> Axes:
 
 def draw_section(section: Section, axes: Axes) -> Axes:
     """Draw the states of a section in the plane of x and x'."""
-    size = 4.0 if section.t.size <= STYLE.many else 1.2
+    size = 4.0 if section.t.size <= MANY else 1.2
     axes.plot(section.x, section.xdot, "o", color=BLUE, markersize=size, markeredgewidth=0, rasterized=True)
     axes.set(xlabel="displacement $x$", ylabel="velocity $\\dot x$")
     return axes
@@ -125,7 +108,8 @@ def shown_end(orbit: Orbit) -> float:
     usual = as_float(period) if period is not None else 1.0
     if not open_ended:
         return last if last > first else first + usual
-    return last + max(STYLE.tail * (last - first), 0.25 * usual)
+    # a last flight without return, or a rest without end, is drawn for a part of the time before it
+    return last + max(0.15 * (last - first), 0.25 * usual)
 
 
 def _curve(orbit: Orbit, ends: tuple[float, float]) -> tuple[Any, Any]:
@@ -135,7 +119,8 @@ def _curve(orbit: Orbit, ends: tuple[float, float]) -> tuple[Any, Any]:
         if kind not in ("flight", "no_return") or stop <= ends[0]:
             continue
         stop = min(stop, ends[1])
-        count = max(STYLE.fewest, int(STYLE.points * (stop - start) / (ends[1] - ends[0])))
+        # the points of a picture are shared out by length
+        count = max(FEWEST, int(4000 * (stop - start) / (ends[1] - ends[0])))
         inside = np.linspace(0.0, stop - start, count)
         times += [start + inside, [np.nan]]
         off_wall = (orbit.height > 0 and start == orbit.tau[0]) or orbit.wall is not None
@@ -156,7 +141,7 @@ def _marks(orbit: Orbit, axes: Axes, begin: float) -> None:
         times = orbit.tau[chosen]
         if not times.size:
             continue
-        small = kind == "impact" and times.size > STYLE.many
+        small = kind == "impact" and times.size > MANY
         axes.plot(
             times,
             orbit.places[chosen],
@@ -233,7 +218,7 @@ def _portrait(orbit: Orbit, axes: Axes, since: float) -> None:
         if kind not in ("flight", "no_return") or stop <= since or start >= end:
             continue
         stop = min(stop, end)
-        inside = np.linspace(start, stop, max(STYLE.fewest, int(SAMPLES * (stop - start) / (end - since))))
+        inside = np.linspace(start, stop, max(FEWEST, int(SAMPLES * (stop - start) / (end - since))))
         inside[-1] = np.nextafter(stop, start)  # before the impact, not after it
         places = orbit.sample(inside)
         axes.plot(places.x, places.xdot, color=BLUE, linewidth=0.9)
@@ -262,7 +247,7 @@ def _velocities(orbit: Orbit, axes: Axes, since: float | None) -> None:
         speeds,
         "o",
         color=BLUE,
-        markersize=4.0 if hits.sum() <= STYLE.many else 1.8,
+        markersize=4.0 if hits.sum() <= MANY else 1.8,
         markeredgewidth=0,
         label="impact",
         rasterized=bool(hits.sum() > 5000),

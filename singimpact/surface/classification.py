@@ -133,7 +133,11 @@ def classify(model: Oscillator, tau: Any = None, t: Any = None, between: Any = N
     folds = [
         line for maps, curves in (("p", surface.horizon), ("phi", surface.zero_set)) for line in _folds(maps, curves)
     ]
-    swans, notes = _swans(model if model.upper is None else model.one_wall(), between)
+    swans, notes = tuple[SwanPoint, ...](), tuple[str, ...]()
+    try:
+        swans = swan_points_over_clearance(model if model.upper is None else model.one_wall(), between)
+    except InputError as error:  # where no list is possible, the reason instead of an empty one
+        notes = (f"swan points over the clearance: {error}",)
     if left_out := surface.divided[1]:
         notes += (f"of H and of Z {len(left_out)} parts are left out, whose flights meet the other wall",)
     if singular:
@@ -203,11 +207,3 @@ def _folds(maps: str, curves: list[Curve]) -> Iterator[FoldLine]:
             kinds = ["cusp" if i in cuts else "closed" if curve.closed else edges.get(i, "edge") for i in pair]
             start, end = ((float(curve.points[i, 0]), float(curve.points[i, 1])) for i in pair)
             yield FoldLine(maps, start, end, (kinds[0], kinds[1]))
-
-
-def _swans(model: Oscillator, between: Any) -> tuple[tuple[SwanPoint, ...], tuple[str, ...]]:
-    """The clearances of swans; where no list is possible, the reason instead of an empty one."""
-    try:
-        return swan_points_over_clearance(model, between), ()
-    except InputError as error:
-        return (), (f"swan points over the clearance: {error}",)

@@ -18,21 +18,11 @@ from singimpact.oscillator.model import Oscillator
 from singimpact.status import Status, Wall
 from singimpact.surface.curve import Window
 
-
-@dataclass(frozen=True)
-class CutSettings:
-    """Spacing of the cut, and the steps in s."""
-
-    longest: float = 2.0  # chord, in units of the resolution of the window
-    samples: int = 8  # in a cell of the sketch of Z
-    least: int = 200  # samples of a sketch
-    halvings: int = 40  # of a step
-    # the end of a piece is located to this step, relative to 1 + |s|: nearer to a graze of the own wall flights are
-    # flown in many digits, and a curve that ends like a square root is 1e-5 longer
-    finest: float = 1e-10
-
-
-SETTINGS = CutSettings()
+# Chord of the cut, in units of the resolution of the window
+LONGEST = 2.0
+# The end of a piece is located to this step, relative to 1 + |s|: nearer to a graze of the own wall flights are flown
+# in many digits, and a curve that ends like a square root is 1e-5 longer
+FINEST = 1e-10
 # Columns of `OtherWall.grazes`: launch time and flight time, launch time and velocity.
 TO_LAND, TO_LAUNCH = (0, 2), (0, 1)
 
@@ -92,16 +82,17 @@ class OtherWall:
         if not window.y[1] > 0:
             return []
         low, high = window.x[0], window.x[1] + window.y[1]
-        s = np.linspace(low, high, max(SETTINGS.least, int(np.ceil(SETTINGS.samples * (high - low) / cell))))
+        # eight samples in a cell of the sketch of Z, 200 at least
+        s = np.linspace(low, high, max(200, int(np.ceil(8 * (high - low) / cell))))
         points = self.grazes(s, window.y[1])[:, columns]
         sizes = np.array([window.longer, window.longer])
         if columns == TO_LAUNCH:
             sizes[1] = np.nanmax(points[:, 1], initial=0.0) or 1.0
-        for _ in range(SETTINGS.halvings):
+        for _ in range(40):
             shown = _inside(points, window, columns)
             with np.errstate(invalid="ignore"):
-                short = np.hypot(*(np.diff(points, axis=0) / sizes).T) <= SETTINGS.longest * window.resolution
-            wide = np.diff(s) > SETTINGS.finest * (1 + np.abs(s[1:]))
+                short = np.hypot(*(np.diff(points, axis=0) / sizes).T) <= LONGEST * window.resolution
+            wide = np.diff(s) > FINEST * (1 + np.abs(s[1:]))
             at = np.flatnonzero(~short & wide & (shown[1:] | shown[:-1]))
             if not at.size:
                 break

@@ -219,6 +219,8 @@ def _with_more_rests(
     """Tacnodes, triple points and periodic grazes."""
     met = [meeting for meeting in met_rests(family, ends, times, wanted) if ends[0] <= meeting.value <= ends[1]]
     events = []
+    # both ends of the window of t belong to it, of which one may be a period
+    low, high = (end * (1 + np.sign(end) * side * SETTINGS.same) for side, end in zip((-1, 1), times, strict=True))
     for meeting in met:
         gap, kind = meeting.gaps[-1], meeting.kind
         if kind == "tacnode":
@@ -227,14 +229,9 @@ def _with_more_rests(
             kind = "tacnode, opposite" if back < 0 else "tacnode, same"
         (first,) = in_first_period((meeting.first,), family.at(meeting.value))
         rests = (first, *(first + offset for offset in meeting.gaps))
-        if any(low <= sign * gap <= high for sign in (1, -1) for low, high in [_widened(times)]):
+        if any(low <= sign * gap <= high for sign in (1, -1)):
             events.append(Transition(kind, meeting.value, first, gap, rests))
     return _each_once(events, ends)
-
-
-def _widened(times: tuple[float, float]) -> tuple[float, float]:
-    """The window of t with both its ends, of which one may be a period."""
-    return times[0] * (1 + np.sign(times[0]) * -SETTINGS.same), times[1] * (1 + np.sign(times[1]) * SETTINGS.same)
 
 
 def _tangencies(family: Family, values: Array, times: tuple[float, float]) -> list[Transition]:

@@ -24,12 +24,9 @@ class TraceSettings:
     """Accuracy, spacing and cost of a traced curve."""
 
     close: float = 4e-13  # last Newton step of a vertex on the curve, relative to 1 + |coordinates|
-    rounds: int = 12  # of Newton's method
     halvings: int = 10  # of a chord at most
     deviation: float = 0.5  # of a chord from the curve, in units of the resolution of the window
     longest: float = 6.0  # chord length, in the same units: the end of a visible part is located to within one chord
-    finest: int = 3  # refinements of the grid around an extremum of y
-    most_steps: int = 2000  # of the continuation along a small component
     turn: float = 0.9  # smallest cosine of the angle between the tangents of two steps
     across: float = (
         0.8  # largest sine between a chord of the contour lines and the curve, at the end where it is smaller
@@ -38,8 +35,6 @@ class TraceSettings:
     # continuation costs more flights than further columns, and one flight gives a whole column
     finer_tau: int = 8
     finer_t: int = 4
-    least_cells: int = 40  # on a side of the grid
-    most_cells: int = 600
 
 
 SETTINGS = TraceSettings()
@@ -90,10 +85,12 @@ def _repeats(new: Polyline, old: Polyline) -> bool:
 
 def _axes(window: Window, cell: float) -> tuple[Array, Array]:
     def axis(ends: tuple[float, float], finer: float) -> Array:
-        return np.linspace(*ends, min(int(np.ceil(finer * cells(ends))), SETTINGS.most_cells) + 1)
+        # and at most
+        return np.linspace(*ends, min(int(np.ceil(finer * cells(ends))), 600) + 1)
 
     def cells(ends: tuple[float, float]) -> int:
-        return max(int(np.ceil((ends[1] - ends[0]) / cell)), SETTINGS.least_cells)
+        # cells on a side of the grid, at least
+        return max(int(np.ceil((ends[1] - ends[0]) / cell)), 40)
 
     # columns no wider than the longest chord: a finer resolution finds smaller components
     chords = window.sides[0] / (SETTINGS.longest * window.least)
@@ -139,7 +136,8 @@ def _small_ones(
             rising = inner if values[i, j] < 0 else -inner
             index = np.unravel_index(np.argmax(rising), inner.shape)
             loops.append((np.array([finer[0][index[1]], finer[1][index[0]]]), float(np.ptp(finer[0])) / 16))
-        elif depth < SETTINGS.finest and np.abs(inner).min() < 0.5 * np.abs(values[i, j]):
+        # refinements of the grid around an extremum of y
+        elif depth < 3 and np.abs(inner).min() < 0.5 * np.abs(values[i, j]):
             fine = _axes(small, (small.x[1] - small.x[0]) / 16)
             loops += _small_ones(grid, fine, grid(*fine), small, depth + 1)
     return loops
@@ -158,7 +156,8 @@ def _followed(seed: Array, gradient: Gradient, window: Window, size: float) -> A
 
 def _walked(start: Array, along: Array, side: int, gradient: Gradient, window: Window, size: float) -> Array:
     line, h, ahead = [start], size / 4, side * along
-    for _ in range(SETTINGS.most_steps):
+    # steps along a small component, at most
+    for _ in range(2000):
         point, _, step, slope = newton((line[-1] + h * ahead)[None], gradient)
         turned = side * _along(slope[0])
         if step[0] > SETTINGS.close or ahead @ turned < SETTINGS.turn or np.hypot(*(point[0] - line[-1])) > 2 * h:
@@ -234,7 +233,8 @@ def newton(points: Array, gradient: Gradient) -> tuple[Array, Array, Array, Arra
     points, step, slopes = points.copy(), np.full(len(points), np.inf), np.full(points.shape, np.nan)
     column = np.full(len(points), np.nan)
     moving = np.arange(len(points))
-    for _ in range(SETTINGS.rounds):
+    # steps of Newton's method
+    for _ in range(12):
         y, slope, value, bend = gradient(points[moving])
         slopes[moving], column[moving] = slope, value
         move, value = _step(y, slope, value, bend)

@@ -42,7 +42,8 @@ def latex(value: Any) -> str:
     if value.is_Function or value.is_NumberSymbol:
         return str(sympy.latex(value))
     if value.is_Float:
-        return _decimal(value)
+        digits, _, exponent = str(sympy.Float(value, SHOWN_DIGITS)).partition("e")
+        return rf"{digits} \cdot 10^{{{int(exponent)}}}" if exponent else digits
     return joined([latex(term) for term in _sorted(value)]) if value.is_Add else _product(value)
 
 
@@ -56,12 +57,6 @@ def joined(terms: list[str]) -> str:
     """
     first, *rest = terms
     return first + "".join(f" - {term[1:]}" if term.startswith("-") else f" + {term}" for term in rest)
-
-
-def _decimal(value: Any) -> str:
-    """A number with the digits that are shown; a power of ten as one."""
-    digits, _, exponent = str(sympy.Float(value, SHOWN_DIGITS)).partition("e")
-    return rf"{digits} \cdot 10^{{{int(exponent)}}}" if exponent else digits
 
 
 def name_of(symbol: Any) -> str:
@@ -97,14 +92,10 @@ def _term_key(term: Any) -> tuple[Any, ...]:
         [-powers.get(name, 0) for name in SMALL],
         [-powers.get(name, 0) for name in _FALLING],
         sum(powers[name] for name in other),
-        [-_height(name) for name in other],
+        # of one degree the highest derivative of a comes first
+        [-int(name[3:]) if name.startswith("a_d") else 0 for name in other],
         str(term),
     )
-
-
-def _height(name: str) -> int:
-    """Among terms of one degree the highest derivative of a comes first."""
-    return int(name[3:]) if name.startswith("a_d") else 0
 
 
 def _negative(term: Any) -> bool:

@@ -131,7 +131,10 @@ class PowerSeries:
         if not self.further:
             raise InputError("valid_within needs numbers: the coefficients of this series have symbols; give model=")
         sizes = {n: abs(float(c)) for n, c in self._numbers.items()}
-        most = TRUST.root * _radius({**sizes, **dict(self.further)})
+        every = {**sizes, **dict(self.further)}
+        # the radius of convergence that the last terms show, by roots: the least of them
+        roots = (size ** (-1 / n) for n, size in every.items() if size and n >= max(every) // 2)
+        most = TRUST.root * min(roots, default=inf)
         return inf if most == inf else halved(lambda radius: self._good(radius, tolerance, sizes), 0.0, most)[0]
 
     def _good(self, radius: float, tolerance: float, sizes: Mapping[int, float]) -> bool:
@@ -145,8 +148,3 @@ class PowerSeries:
             * max((size * (radius / TRUST.root) ** n for n, size in self.further.items()), default=0.0)
         )
         return tail + beyond <= TRUST.tail * tolerance * min(1.0, value)
-
-
-def _radius(sizes: Mapping[int, float]) -> float:
-    """The radius of convergence that the last terms show, by roots: the least of them."""
-    return min((size ** (-1 / n) for n, size in sizes.items() if size and n >= max(sizes) // 2), default=inf)
