@@ -13,12 +13,13 @@ from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 from singimpact.algebra.numbers import as_float, as_fraction, constant
 from singimpact.impact_oscillator import ImpactOscillator
-from singimpact.inputs import InputError, checked_keywords, refuse, takes_two_walls, whole
+from singimpact.inputs import InputError, checked_keywords, refuse, require_known, takes_two_walls, whole
 from singimpact.oscillator.model import Oscillator, require_model
 
 if TYPE_CHECKING:
     from singimpact.contact.swans import SwanPoints
     from singimpact.dynamics.basins_of_attraction import Basins
+    from singimpact.dynamics.basins_over import BasinsOver
     from singimpact.surface.classification import Classification
     from singimpact.surface.curve import Curve
 
@@ -98,7 +99,8 @@ def basins(
     executor: Any = None,
     output: Any = None,
     wall: Any = None,
-) -> Basins:
+    **moving: Any,
+) -> Basins | BasinsOver:
     """Basins of attraction: the attractor of each state of a grid: an orbit or cycle, repeated chatter, rest, chaos.
 
     Parameters
@@ -111,20 +113,36 @@ def basins(
         so. executor, output : as for `sweep`; a case is some rows of the grid.
         The default executor is one thread for each core. wall : of the states of a model with two walls: "lower" (also
         without it) or "upper".
+    moving : `over`, a number of the model as `bifurcation` takes it, and `between`, its ends: the shares of the basins
+        over it. `values` of the number (50), and at each `states` (400), drawn evenly from the window by `seed` (0), at
+        the same places of it. `jump` (0.1) : attractors of two neighbouring values are one where they are of one class
+        and their states are nearer, in periods and in highest velocities. A case is a value; `size` has no meaning.
 
     Returns
     -------
-    Basins : `.codes`, shape (size, size), numbers of the classes in `.attractors`; `.classes` has their names and
-        shares, `.first_chatter_completes` is an array of bool. `si.plot` draws it, `.to_csv(file)` writes it. Between
-        two walls an orbit has their word, such as (lu, 1), and its v is < 0 at the upper one.
+    BasinsOver : with `over`; `.values`, shape (m,), `.attractors`, `.share` and `.error`, shape (m, attractors),
+        standard errors of binomial counts, `.undecided`, shape (m,). `si.plot` draws it, `.to_csv(file)` writes it.
+    Basins : else; `.codes`, shape (size, size), numbers of the classes in `.attractors`; `.classes` has their names and
+        shares, `.first_chatter_completes` is an array of bool. `si.plot` draws it, `.to_csv(file)` writes it;
+        `.uncertainty()` and `.entropy()` measure the boundaries. Between two walls an orbit has their word, such as
+        (lu, 1), and its v is < 0 at the upper one.
 
     Raises
     ------
-    InputError : another model, or a window or a size that is not valid.
+    InputError : another model or number, or a window or a size that is not valid.
+
+    Notes
+    -----
+    Attractors are followed as by G. Datseris, K. Luiz Rossi and A. Wagemakers, Chaos 33 (2023) 073151. Chaotic ones
+    have no states to compare: they are one attractor. An attractor whose basin the sample misses at a value has its
+    label again afterwards, if it is near.
 
     Examples
     --------
     >>> from singimpact.impact_oscillator import ImpactOscillator, linear
+    >>> found = basins(linear(2, 0, "0.5"), over="clearance", between=("0.2", "0.3"), values=3, states=40)
+    >>> found, found.share.tolist()
+    (BasinsOver(clearance: 3 values from 0.2 to 0.3, 40 states of each: (1, 1) orbit 100 %), [[1.0], [1.0], [1.0]])
     >>> basins(ImpactOscillator("x - (1 - x**2)*xdot", "0", "-2.1", "0.8"), size=4)
     Basins(4 x 4 states: limit cycle without impact, period 6.66329 100 %)
     >>> basins(linear(2, "0.7", "0.5"), ((0, 3), (0, 1)), 8)
@@ -136,7 +154,13 @@ def basins(
     starts = isinstance(osc, Oscillator) and osc.autonomous
     names = "((x_low, x_high), (xdot_low, xdot_high))" if starts else "((tau_low, tau_high), (v_low, v_high))"
     tau, v = (None, None) if window is None else _two_ends(window, names)
-    return basins(osc, tau, v, size, executor, output, impacts, wall)
+    if not moving:
+        return basins(osc, tau, v, size, executor, output, impacts, wall)
+    from singimpact.dynamics.basins_over import basins_over
+
+    require_known("argument of basins", moving, ("over", "between", "values", "states", "seed", "jump"))
+    moving = {"over": None, "between": None, "executor": executor, "output": output} | moving
+    return basins_over(osc, window=(tau, v), impacts=impacts, wall=wall, **moving)
 
 
 @checked_keywords

@@ -1,7 +1,7 @@
 """Basins: the attractor of each state of a grid: an (n, k) orbit, a limit cycle, repeated chatter, rest, chaos."""
 
 from abc import abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from math import log
@@ -352,13 +352,13 @@ def for_ever(study: Study, states: tuple[Array, Array], table: Array) -> tuple[A
 
 
 def placed(
-    model: Oscillator, window: Sequence[Any], places: Sequence[Array], side: Any, impacts: int, parts: int = 1
+    model: Oscillator, window: Sequence[Any], places: Iterable[Array], side: Any, impacts: int, parts: int = 1
 ) -> tuple[Study, tuple[Array, Array]]:
     """The study of a window, and its states at places, two arrays, in so many parts of its sides."""
-    (low, high), (slow, fast) = _window(model, *window)
-    speeds = slow + places[1] * (fast - slow) / parts
+    ((low, high), (slow, fast)), (across, up) = _window(model, *window), places
+    speeds = slow + up * (fast - slow) / parts
     study = Study(model, lift_offs_of_walls(model), max(-slow, fast), whole("impacts", impacts, 1, 10**7), high)
-    return study, (low + places[0] * (high - low) / parts, -speeds if side else speeds)
+    return study, (low + across * (high - low) / parts, -speeds if side else speeds)
 
 
 def _window(model: Oscillator, tau: Any, v: Any) -> tuple[tuple[float, float], tuple[float, float]]:

@@ -177,13 +177,11 @@ class BallOrbits:
     Parameters
     ----------
     impacts : flown at most; r = 0.999 to 30 digits takes 35 000. bits : of the balls at most, per digit asked for.
-    early : the velocity at which bounds are next made, over that at which they are expected to be narrow enough.
     spare : bits beside the digits. wide : the window on which the rest is bounded, in units of its first guess.
     """
 
     impacts: int = 200_000
     bits: int = 64
-    early: int = 2
     spare: int = 64
     wide: int = 3
 
@@ -257,7 +255,8 @@ def _chatter(flow: AnalyticFlow, tau: Expression, v: Expression, removed: int, d
                 return None  # the flights have lost the digits, and further ones do not give them back
             # the width falls like v^2: it is not looked at again until it is nearly small enough
             wanted = max(abs(time + left).upper() / 10**digits, time.rad())
-            slow = ORBITS.early * speed * (wanted / left.rad()).sqrt()
+            # at twice the velocity at which bounds are expected to be narrow enough they are made next
+            slow = 2 * speed * (wanted / left.rad()).sqrt()
         hit = flow.first_hit(time, speed, removed=removed)
         if hit is None or hit.time is None:
             return None

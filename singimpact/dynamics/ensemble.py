@@ -280,23 +280,10 @@ def _result(model: Oscillator, table: Array, times: Array, start: Array, shape: 
     with np.errstate(invalid="ignore"):
         speed = columns["speed"] / np.where(impacts > 0, impacts, np.nan)
     t, x, xdot = (times, motion[0], motion[1]) if times.size else (None, None, None)
-    return Ensemble(
-        columns["tau"],
-        columns["v"],
-        status_array(columns["status"].astype(np.int8)),
-        impacts,
-        columns["rests"].astype(np.int64),
-        columns["first_rest"],
-        columns["resting"],
-        speed,
-        begun,
-        columns["tau"] - begun,
-        columns["wall"].astype(np.int8) if model.upper is not None else None,
-        t,
-        x,
-        xdot,
-        model,
-    )
+    ended = status_array(columns["status"].astype(np.int8)), impacts, columns["rests"].astype(np.int64)
+    wall = columns["wall"].astype(np.int8) if model.upper is not None else None
+    lasted = columns["first_rest"], columns["resting"], speed, begun, columns["tau"] - begun
+    return Ensemble(columns["tau"], columns["v"], *ended, *lasted, wall, t, x, xdot, model)
 
 
 def _flown(
@@ -465,17 +452,5 @@ class _Run:
 
     def table(self) -> Array:
         """Rows of `COLUMNS`."""
-        lives = self.lives
-        return np.column_stack(
-            [
-                lives.time(),
-                lives.v,
-                lives.wall,
-                lives.status,
-                lives.flown,
-                lives.rests,
-                lives.first_rest,
-                lives.resting,
-                self.speed,
-            ]
-        )
+        names = ("v", "wall", "status", "flown", "rests", "first_rest", "resting")
+        return np.column_stack([self.lives.time(), *(getattr(self.lives, name) for name in names), self.speed])

@@ -41,14 +41,7 @@ class FitSettings:
     # steps at most, and the change of the numbers, in their errors, below which the fit is there
     steps: int = 80
     still: float = 1e-3
-    # impacts of the beginning that are fitted first, for what a wrong period misses grows with time
-    few: tuple[int, ...] = (12, 36)
-    # weight of a step beside that of what was measured
-    held: float = 1e-9
-    # noise that is taken for that of what was measured at least, beside its size
-    exact: float = 1e-12
-    # impacts that may be missing between two measured ones, and by what part of a flight its time may be missed
-    missing: int = 8
+    # part of a flight by which its time may be missed
     off: float = 0.25
     # velocities below so many standard deviations are chatter that noise hides
     slow: float = 10.0
@@ -152,7 +145,8 @@ def fit(osc: Oscillator, data: Any, over: Sequence[str], *, noise: Any = None) -
     numbers = np.array([moving.start[name] for name in names])
     record = _Motion(columns, sizes) if "x" in columns else _Impacts(columns, sizes, moving)
     states = record.states()
-    counts = [count for count in SETTINGS.few if count < len(states)]
+    # the first impacts are fitted first, because what a wrong period misses grows with time
+    counts = [count for count in (12, 36) if count < len(states)]
     for count in (*counts, len(states), None):  # last with the first hits, once the numbers tell them
         run = _Run(moving, record, (numbers, states[:count]), count is None)
         run.settle(noise is None)
@@ -309,7 +303,8 @@ class _Run:
         beside = abs(rho - following[1]) < SETTINGS.off * max(v, following[1])
         if not self.first and beside and abs(end.place[0]) < -SETTINGS.off * gap * end.by_time[0]:
             return between  # it comes down to the wall about then
-        while len(between) <= SETTINGS.missing:
+        # so many impacts may be missing
+        while len(between) <= 8:
             step = impact_map(self.model, tau, v)
             if step.status != Status.hit:
                 return None
@@ -352,7 +347,8 @@ class _Run:
             weights = diags_array(np.tile(1 / self.record.sizes**2, len(off)))
             soft = diags_array(np.full(missed.size, -((loose * float(self.record.sizes[0])) ** 2)))
             # a state that nothing was measured of stays where it is
-            still = diags_array(np.full(self.size, SETTINGS.held / float(self.record.sizes[0]) ** 2))
+            # weight of a step beside that of what was measured
+            still = diags_array(np.full(self.size, 1e-9 / float(self.record.sizes[0]) ** 2))
             normal = orbit.T @ weights @ orbit + still
             matrix = csc_array(block_array([[normal, slopes.T], [slopes, soft]]))
             right = np.concatenate([orbit.T @ (weights @ off.ravel()), -missed])
@@ -404,23 +400,20 @@ class _Run:
         if off.size <= free:
             raise refuse("data", f"{off.size} numbers", f"more than {free}, which the orbit has free, or noise=")
         size = np.sqrt((off**2).sum(axis=0) / len(off) * off.size / (off.size - free))
-        return np.asarray(np.maximum(size, SETTINGS.exact * np.abs(self.states).max()))
+        # noise at least, beside the size of what was measured
+        return np.asarray(np.maximum(size, 1e-12 * np.abs(self.states).max()))
 
     def result(self, names: tuple[str, ...]) -> Fit:
         """The result of the last step."""
         t, off, _ = self.record.rows(self)
-        error = np.sqrt(np.diag(self.covariance)).tolist()
-        tau, v = self.states.T
-        return Fit(
+        error = dict(zip(names, np.sqrt(np.diag(self.covariance)).tolist(), strict=True))
+        noise, missing = dict(zip(self.record.names, self.record.sizes.tolist(), strict=True)), len(self.states)
+        numbers = (
             self.moving.oscillator(self.values),
             self.values,
-            dict(zip(names, error, strict=True)),
+            error,
             self.covariance,
-            tau,
-            v,
-            t,
-            off,
-            dict(zip(self.record.names, self.record.sizes.tolist(), strict=True)),
-            len(self.states) - len(self.seen),
-            tuple(self.cut),
+            self.states[:, 0],
+            self.states[:, 1],
         )
+        return Fit(*numbers, t, off, noise, missing - len(self.seen), tuple(self.cut))

@@ -21,10 +21,8 @@ from singimpact.oscillator.model import Oscillator
 class FreeSettings:
     """When a motion without impact is decided; lengths are relative to the range of x - c on the stretch."""
 
-    # turns of the fastest motion that are followed first, then twice as many; samples at first, and at most in a turn
-    turns: int = 8
+    # samples at first; 2048 at most in a turn
     samples: int = 256
-    densest: int = 2048
     # samples follow the motion where the trapezoidal rule for x' misses x by less than this
     missed: float = 0.02
     block: int = 500  # motions that are sampled together
@@ -71,7 +69,8 @@ def _fates(model: Oscillator, height: Array, xdot: Array) -> Array:
     rows = np.full((height.size, 3), np.nan)
     for first in range(0, height.size, SETTINGS.block):
         chosen = np.arange(first, min(first + SETTINGS.block, height.size))
-        state, span, time = np.stack([height, xdot], axis=1)[chosen], SETTINGS.turns * phases_of(model).unit, 0.0
+        # turns of the fastest motion that are followed first, then twice as many
+        state, span, time = np.stack([height, xdot], axis=1)[chosen], 8 * phases_of(model).unit, 0.0
         while chosen.size and time < horizon_of(model, None):
             times, way = _followed(model, state, span)
             decided = _decided(model, times, way)
@@ -101,7 +100,7 @@ def _followed(model: Oscillator, state: Array, span: float) -> tuple[Array, Arra
         with np.errstate(all="ignore"):
             miss = np.abs(np.diff(z) - (u[:, 1:] + u[:, :-1]) / 2 * times[1]).max(axis=1)
             coarse = (miss > SETTINGS.missed * np.ptp(z, axis=1)).any()
-        if not coarse or count * phases_of(model).unit > SETTINGS.densest * span:
+        if not coarse or count * phases_of(model).unit > 2048 * span:
             return times, way
         count *= 2
 

@@ -19,10 +19,8 @@ class GrowthSettings:
 
     longest: float = 8.0  # maximal chord length
     bend: float = 0.5  # deviation of a vertex from the chord of its neighbours that is refined
-    jump: float = 8.0  # distance of neighbours in s beyond which there is a discontinuity between them
     graze: float = 0.01  # an arc ends at a graze like a square root: its end is located to within this length
     most: int = 4000  # points of a piece at most
-    distinct: float = 0.25  # distance from the generation before below which the growth ends
     generations: int = 60  # images at most
 
 
@@ -92,7 +90,8 @@ class Carried:
         """The image of a piece, refined to the resolution, in parts without a discontinuity."""
         generation = piece.generation + 1
         s, points, coarse = self._refined(piece.s, self.step(piece.points, piece.generation), generation)
-        jump = np.hypot(*(np.diff(points, axis=0) / self.window.sides).T) > SETTINGS.jump * self.window.resolution
+        # neighbours in s so far apart have a discontinuity between them
+        jump = np.hypot(*(np.diff(points, axis=0) / self.window.sides).T) > 8.0 * self.window.resolution
         torn: Array = np.asarray(jump & (np.abs(np.diff(s)) <= closest(self.window) * np.ptp(piece.s)))
         if self.located and torn.any():
             s, points, torn = self._located(s, points, np.flatnonzero(torn), generation)
@@ -203,4 +202,5 @@ def adds(piece: Piece, before: list[Piece], window: Window) -> bool:
     """
     seen = piece.points[held(window, piece.points)] / window.sides
     gaps = [distances(seen, old.points / window.sides) for old in before]
-    return not len(seen) or bool(np.min(gaps, axis=0).max() > SETTINGS.distinct * window.resolution)
+    # nearer to the generation before the growth ends
+    return not len(seen) or bool(np.min(gaps, axis=0).max() > 0.25 * window.resolution)

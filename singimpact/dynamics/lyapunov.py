@@ -41,8 +41,7 @@ class LyapunovSettings:
     # longest period, and relative distance of states that repeat
     period: int = 64
     close: float = 1e-9
-    # how often the impacts are flown anew when their halves differ by more than so many standard errors
-    again: int = 3
+    # standard errors by which the halves of the impacts may differ
     apart: float = 4.0
 
 
@@ -378,7 +377,8 @@ class _Run:
                 open_[stretch.chosen[_repeats(self.lives, stretch)]] = False
             block *= 2
         result, open_ = np.zeros((self.size, 14)), np.ones(self.size, bool)
-        for _ in range(SETTINGS.again):
+        # the impacts are flown anew when their halves differ
+        for _ in range(3):
             self.begin(open_)
             # impacts in which the vector that is followed turns into its direction
             self.fly(np.where(open_, min(100, impacts), 0), keep=True)
@@ -401,19 +401,8 @@ class _Run:
         exponents = np.where(over, -np.inf, np.where(impacts > 0, exponents, np.nan))
         error = np.where(over, 0.0, error)
         status = np.where(over & (lives.status != Status.unresolved), Status.sticks, lives.status)
-        columns = [
-            *exponents,
-            *error,
-            impacts,
-            time,
-            *self.start,
-            *last,
-            status,
-            over,
-            self.before,
-            _halves_agree(rows) | over,
-        ]
-        return np.stack(columns, axis=1).astype(float)
+        columns = [*exponents, *error, impacts, time, *self.start, *last, status, over, self.before]
+        return np.stack([*columns, _halves_agree(rows) | over], axis=1).astype(float)
 
 
 def _repeats(lives: Lives, stretch: Stretch) -> Array:

@@ -56,21 +56,17 @@ class RegionSettings:
     beside: float = 1e-3
     near: float = 3e-4
     rounding: float = 1e-11
-    # the same of phases at which orbits leave the wall without velocity: some come to their cycle slowly
-    back: float = 1e-8
     # relative distance of states of an orbit that are one; at a doubling they part like a root
     same: float = 3e-4
-    # impacts between two lift-offs up to which rounding does not decide the second; relative distance of a neighbour
+    # impacts between two lift-offs up to which rounding does not decide the second
     certain: int = 60
-    neighbour: float = 1e-14
     # impacts over which a number is taken, after as many
     measured: int = 600
     # impacts from which on a neighbour is followed, its relative distance, and impacts after which it is set back
     chaos: int = 160
     apart: float = 1e-12
     steps: int = 16
-    # distances that are taken at least; standard errors, and growth an impact, above which chaos is seen
-    looks: int = 6
+    # standard errors, and growth an impact, above which chaos is seen
     sure: float = 4.0
     least: float = 0.01
 
@@ -337,7 +333,8 @@ class _Settling:
         states = np.stack([lives.phase[at], lives.turns[at], lives.flown[at]])
         away, k, n = states - self.left[:, at]
         # of an orbit of one impact that comes from both sides in turn, every second state is nearer
-        near = SETTINGS.back * np.where(n == 1, 1.0, 1e-2)
+        # some orbits that leave the wall without velocity come to their cycle slowly, and
+        near = 1e-8 * np.where(n == 1, 1.0, 1e-2)
         same = (np.abs(away) < near * lives.unit[at]) & (k > 0)
         self.kind[at[same]], self.n[at[same]], self.k[at[same]] = ORBIT, n[same], k[same]
         if look.bit_count() <= 2:
@@ -346,7 +343,7 @@ class _Settling:
     def _repeated(self, at: Array) -> Array:
         """Whether a neighbour a few roundings away lifts off after as many periods as an orbit did."""
         lives = self.lives
-        v = lives.v[at] * (1 + SETTINGS.neighbour)
+        v = lives.v[at] * (1 + 1e-14)
         other = Lives(lives.members, lives.which[at], lives.phase[at], v, lives.wall[at])
         other.turns, other.lifted = lives.turns[at].copy(), lives.lifted[at].copy()
         while (
@@ -425,7 +422,8 @@ class _Settling:
             mean = total / count
             error = np.sqrt(np.maximum(square / count - mean**2, 0.0) / count)
             least = np.maximum(SETTINGS.least * SETTINGS.steps, SETTINGS.sure * error)
-        self.kind[at[(count >= SETTINGS.looks) & (mean > least)]] = CHAOS
+        # so many distances are taken at least
+        self.kind[at[(count >= 6) & (mean > least)]] = CHAOS
 
 
 def _gaps(turns: Array, speeds: Array, n: int) -> Array:

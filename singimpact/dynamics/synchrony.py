@@ -4,7 +4,7 @@ Nothing closes here, so orbits are compared with each other, at their first impa
 which neighbours come together is called quasi-periodic; one on which they separate, chaotic.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -17,20 +17,11 @@ from singimpact.flights.impact_map import impact_map
 from singimpact.flights.orbits import signed_iterate
 from singimpact.status import Status
 
-
-@dataclass(frozen=True)
-class ResponseSettings:
-    """When responses are one; times are in turns of the fastest motion, distances relative."""
-
-    turns: int = 128  # before the classes are looked for first; the times are doubled
-    # turns in which the responses that are left are compared: an exponent of -0.01 an impact makes 1e-8 of a distance
-    confirmed: int = 2048
-    same: float = 1e-6
-    different: float = 1e-3
-    impacts: int = 10**6  # there, at most
-
-
-SETTINGS = ResponseSettings()
+# Turns of the fastest motion in which the responses that are left are compared: an exponent of -0.01 an impact makes 1e-8
+# of a distance
+CONFIRMED = 2048
+# Relative distances of responses that are one, and of those that are several
+SAME, DIFFERENT = 1e-6, 1e-3
 
 
 class Responses:
@@ -45,7 +36,8 @@ class Responses:
 
     def settle(self) -> None:
         """Follow all states until neighbours of each come together, or its impacts are used up."""
-        leader, time = np.arange(self.tau.size), self.study.phases.unit * SETTINGS.turns
+        # turns before the classes are looked for first; the times are doubled
+        leader, time = np.arange(self.tau.size), self.study.phases.unit * 128
         while True:
             before = self.rests.copy()
             self.advance(np.unique(leader), self.study.start + time)
@@ -148,7 +140,7 @@ def meets(study: Study, tau: float, v: float) -> bool:
     """
     if growth(study.model, np.array([tau]), np.array([v]), study.fast)[0] >= 0:
         return False
-    rows = confirmed(study, np.array([[RESPONSE, tau, v], [RESPONSE, tau, v * (1 + SETTINGS.different)]]))
+    rows = confirmed(study, np.array([[RESPONSE, tau, v], [RESPONSE, tau, v * (1 + DIFFERENT)]]))
     return bool(rows[0, 0] == RESPONSE and (rows[0] == rows[1]).all())
 
 
@@ -159,16 +151,17 @@ def confirmed(study: Study, rows: Array) -> Array:
     """
     rows, chosen = rows.copy(), np.flatnonzero(rows[:, 0] == RESPONSE)
     several, which = np.unique(rows[chosen], axis=0, return_inverse=True)
-    run = Responses(replace(study, impacts=SETTINGS.impacts), several[:, 1], several[:, 2])
-    late = several[:, 1].max(initial=study.start) + study.phases.unit * SETTINGS.confirmed
+    # impacts there, at most
+    run = Responses(replace(study, impacts=10**6), several[:, 1], several[:, 2])
+    late = several[:, 1].max(initial=study.start) + study.phases.unit * CONFIRMED
     run.advance(np.arange(len(several)), late)
     out, left = run.rows.copy(), np.isnan(run.rows[:, 0])
     while left.any():
         i = np.flatnonzero(left)[0]
         away = apart((run.tau, run.v), (run.tau[i], run.v[i]), study.phases, study.fast)
-        near = left & (away < SETTINGS.different)
+        near = left & (away < DIFFERENT)
         out[near] = RESPONSE, run.tau[i], run.v[i]
-        out[near & (away >= SETTINGS.same)] = OTHER, 0.0, 0.0
+        out[near & (away >= SAME)] = OTHER, 0.0, 0.0
         left &= ~near
     rows[chosen] = out[which.ravel()]
     return rows

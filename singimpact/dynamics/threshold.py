@@ -54,9 +54,8 @@ class Search:
     # larger
     coarse: float = 2.0**-12
     bits: int = 128  # of the balls in which that series is computed
-    # nonlinear models: width of the bracket in which Newton's method starts, its steps, half widths about its root
+    # nonlinear models: width of the bracket in which Newton's method starts, half widths about its root
     rough: float = 2.0**-5
-    steps: int = 8
     widths: tuple[float, ...] = (2 * EPSILON, 16 * EPSILON, 256 * EPSILON)
     over: float = 1e-3  # a chatter is over for this when less is left of it, of the time on which a_c changes
 
@@ -276,7 +275,8 @@ class _Sides:
     def around_root(self, low: float, high: float) -> tuple[float, float]:
         """A narrow bracket about the velocity from which an orbit meets the series of gamma, or else the given one."""
         v = (low + high) / 2
-        for _ in range(SEARCH.steps):
+        # steps of Newton's method
+        for _ in range(8):
             change = self.miss(v)
             v = min(max(v - change, low), high)
             if abs(change) <= SEARCH.narrow * v:

@@ -1,18 +1,36 @@
 """Pictures of basins, also before and after a transition of P, and of regions; classes differ in lightness too."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from singimpact.branches.transitions import BothSides
 from singimpact.dynamics.basins_of_attraction import Basins, ClassGrid
+from singimpact.dynamics.basins_over import BasinsOver
 from singimpact.dynamics.regions import Regions
 from singimpact.inputs import refuse
 from singimpact.oscillator.moving_number import value_of, with_number
 from singimpact.scenes.label_places import legend_below, legend_entries
 from singimpact.scenes.scene import LAYERS, Scene
-from singimpact.scenes.style import CHATTERED, CLASS_ORBITS, CLASSES, GREY, LETTERS, OPEN, PENS, VERMILLION, new_axes
+from singimpact.scenes.style import (
+    BLACK,
+    CHATTERED,
+    CLASS_ORBITS,
+    CLASSES,
+    GREY,
+    LETTERS,
+    OPEN,
+    PENS,
+    VERMILLION,
+    WHITE,
+    new_axes,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 MEASURES = {
     "lyapunov": "larger exponent, per unit of time",
@@ -58,6 +76,24 @@ def draw_basins(found: ClassGrid, axes: Any = None, colors: Sequence[str] | None
     colors = class_colors([found])[0] if colors is None else list(colors)
     layers = [(found.codes == code, f"{name}, {100 * share:.3g} %") for code, name, share in found.classes]
     return _painted(found, layers, colors, axes)
+
+
+def draw_basins_over(result: BasinsOver, axes: Axes) -> Axes:
+    """Shares of basins over a number, stacked, the largest lowest, with standard errors of their sums."""
+    order, names, _ = zip(*result.classes, strict=True)
+    shares = result.share[:, list(order)].T
+    layers = axes.stackplot(
+        result.values, shares, colors=class_colors([result])[0], edgecolor=WHITE, linewidth=0.4, step="mid"
+    )
+    sums, n = shares.cumsum(axis=0), result.codes.shape[1]
+    for below in sums[:-1]:
+        # one state more in and one more out, as in `BasinsOver.error`
+        likely = (n * below + 1) / (n + 2)
+        error = np.sqrt(likely * (1 - likely) / (n + 3)) * ((below > 0) & (below < 1))
+        axes.errorbar(result.values, below, error, fmt="none", ecolor=BLACK, elinewidth=0.7, gid="standard error")
+    axes.set(xlabel=LETTERS.get(result.over, result.over), ylabel="share of the states", ylim=(0, 1))
+    axes.set_xlim(result.values[0], result.values[-1])
+    return legend_below(axes, dict(list(zip(names, layers, strict=True))[:12]), 3 if max(map(len, names)) < 36 else 2)
 
 
 def class_colors(several: Sequence[ClassGrid]) -> list[list[str]]:

@@ -321,26 +321,14 @@ def draw_bifurcation(diagram: Bifurcation, axes: Any, height: str = "v") -> Any:
     resting = ended == 1.0
     inches = float(np.prod(axes.figure.get_size_inches()))
     size = float(np.clip(np.sqrt(SPREAD * inches / max(values.size, 1)) / 20, 0.9, 3.0))
-    dots: dict[str, Any] = {
-        "marker": "o",
-        "linestyle": "none",
-        "markersize": size,
-        "markeredgewidth": 0,
-        "rasterized": True,
-    }
+    dots: dict[str, Any] = {"marker": "o", "linestyle": "none", "markeredgewidth": 0, "rasterized": True}
+    large, dots = dots | {"markersize": 1.5 * size, "clip_on": False}, dots | {"markersize": size}
     axes.plot(values[~resting], places[~resting], color=BLACK, label="impact", **dots)
     if diagram.direction == "both":
         down = (np.arange(values.size) >= values.size // 2) & ~resting
         axes.plot(values[down], places[down], color=BLUE, label="impact, on the way down", **dots)
     if resting.any():
-        axes.plot(
-            values[resting],
-            places[resting],
-            color=VERMILLION,
-            label="end of complete chatter",
-            clip_on=False,
-            **(dots | {"markersize": 1.5 * size}),
-        )
+        axes.plot(values[resting], places[resting], color=VERMILLION, label="end of complete chatter", **large)
     above = height == "v" and bool((v < 0).any())  # impacts at an upper wall
     axes.set(xlabel=LETTERS.get(diagram.over, diagram.over), ylabel=HEIGHTS["walls" if above else height])
     low, top = axes.get_ylim()
@@ -381,16 +369,8 @@ def draw_border(border: BorderOrbit, axes: Any, below: Any = None) -> Any:
     for kind, (marker, color) in CASCADE_MARKS.items():
         rows = [(sample.distance, _height(sample, border)) for sample in samples if _kind(sample, border) == kind]
         if rows:
-            axes.plot(
-                *np.array(rows).T,
-                marker,
-                color=color,
-                markersize=size,
-                linestyle="none",
-                markeredgewidth=0.9,
-                label=CASCADE_WORDS[kind],
-                zorder=4,
-            )
+            look: dict[str, Any] = {"color": color, "linestyle": "none", "markeredgewidth": 0.9, "zorder": 4}
+            axes.plot(*np.array(rows).T, marker, markersize=size, label=CASCADE_WORDS[kind], **look)
     name = LETTERS.get(border.over, border.over)
     axes.set_title(
         f"border orbit at {name} = {float(border.parameter):.12g}, chatter completes {border.side}", fontsize="medium"

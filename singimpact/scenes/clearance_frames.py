@@ -35,7 +35,6 @@ class FilmSettings:
         then less than a period. alone : the same when there is no period. aside : of the clearance, where no swan is.
         around : of the clearance, where swans are looked for if f(x, 0) is not a polynomial.
     upwards : the largest part of the way to an upper wall that the slider takes.
-    reach_tau, reach_t : of the window, in those halves; the unfolded swan reaches to 3 and 4.
     height : of the picture, in sizes of the cusp of P, (64/24) |a''| half^3.
     steps : of the slider. pixels : of a panel.
     """
@@ -45,8 +44,6 @@ class FilmSettings:
     aside: float = 0.1
     around: float = 2.0
     upwards: float = 0.75
-    reach_tau: float = 4.0
-    reach_t: float = 6.0
     height: float = 1.5  # a swan that is opened wide is higher than its leading part
     # a window shrinks with the swan, but slower, so that one sees the swan open: by (1 + 3 e)/4 for tau and t, times
     # e^2 more for v, where e is half the distance of A and B in that of the ends, and at least `least`
@@ -244,7 +241,8 @@ def _through(swan: SwanPoint, between: tuple[Fraction, Fraction] | None, steps: 
         open_ = (2 * slope * abs(clearance - swan.clearance) / curvature) ** 0.5 / half
         share = float(np.clip(open_, SETTINGS.least, 1))
         scale = (1 + 3 * share) / 4
-        tau, t = SETTINGS.reach_tau * half * scale, SETTINGS.reach_t * half * scale
+        # the window, in halves of the distance of A and B: the unfolded swan reaches to 3 and 4
+        tau, t = 4.0 * half * scale, 6.0 * half * scale
         return View((swan.tau - tau, swan.tau + tau), (-t, t), size * scale * share**2)
 
     return [(clearance, view(clearance)) for clearance in places.tolist()]

@@ -20,6 +20,7 @@ from singimpact.branches.manifold import Manifold
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.transitions import BothSides
 from singimpact.dynamics.basins_of_attraction import Basins
+from singimpact.dynamics.basins_over import BasinsOver
 from singimpact.dynamics.bifurcation_diagram import Bifurcation
 from singimpact.dynamics.fit import Fit
 from singimpact.dynamics.invariant_arcs import model_step
@@ -27,7 +28,7 @@ from singimpact.dynamics.orbit import Orbit, Section
 from singimpact.dynamics.regions import Regions
 from singimpact.dynamics.release_map import ReleaseMap
 from singimpact.inputs import InputError, checked_keywords, refuse, takes_two_walls
-from singimpact.scenes.basins_picture import draw_basins, draw_both_sides, draw_regions
+from singimpact.scenes.basins_picture import draw_basins, draw_basins_over, draw_both_sides, draw_regions
 from singimpact.scenes.branch_picture import (
     bifurcation_sheet,
     draw_bifurcation,
@@ -262,10 +263,10 @@ def plot(
     Parameters
     ----------
     thing : an orbit, a periodic orbit with impacts, a section of an orbit, a map of release phases, a scene, basins,
-        regions over two numbers, a fit, a bifurcation diagram, a branch or an event curve or a list of them, W^s or
-        W^u of a saddle or a list of them, the points where two cross, a certified orbit in which they do, a horseshoe,
-        a border orbit, of which the cascade is drawn, both sides of a transition (on two axes), a curve or a list of
-        curves of one plane, or an impact surface, of which Z and H are drawn, with the cut at a second wall.
+        basins over a number, regions over two, a fit, a bifurcation diagram, a branch or an event curve or a list of
+        them, W^s or W^u of a saddle or a list of them, the points where two cross, a certified orbit in which they do,
+        a horseshoe, a border orbit, of which the cascade is drawn, both sides of a transition (on two axes), a curve or
+        a list of curves of one plane, or an impact surface, of which Z and H are drawn, with the cut at a second wall.
     ax : where to draw; those of a new figure of pyplot when it is not given, so that a notebook shows it and
         `matplotlib.pyplot.show()` does. Branches drawn on the axes of a bifurcation diagram keep its limits, and so do
         manifolds on those of basins, and a certified orbit on those of manifolds.
@@ -391,6 +392,7 @@ PICTURES: tuple[tuple[type, bool, New, Drawer], ...] = (
     (Fit, True, WIDE, draw_fit),
     (ReleaseMap, True, HIGH, draw_release_map),
     (Basins, True, HIGH, draw_basins),
+    (BasinsOver, True, HIGH, draw_basins_over),
     (Regions, True, HIGH, draw_regions),
     (BorderOrbit, True, UPRIGHT, lambda border, axes: draw_border(border, *np.ravel(axes))),
     (Branch, False, LOW, draw_branches),

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -16,18 +15,15 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-@dataclass(frozen=True)
-class LabelSettings:
-    """Where a name may stand, in points of 1/72 inch."""
-
-    distances: tuple[float, ...] = (9.0, 16.0, 26.0, 38.0, 52.0, 70.0, 90.0)
-    directions: int = 16
-    # curves are sampled so densely
-    sample: float = 2.0
-
-
-SETTINGS = LabelSettings()
+# Distances and directions in which a name may stand, in points of 1/72 inch, and the spacing of the samples of curves
+DISTANCES, DIRECTIONS, SAMPLE = (9.0, 16.0, 26.0, 38.0, 52.0, 70.0, 90.0), 16, 2.0
 LEADER = {"arrowstyle": "-", "color": GREY, "linewidth": 0.7, "shrinkA": 1, "shrinkB": 4}  # from a name to its point
+LABEL: dict[str, Any] = {
+    "textcoords": "offset points",
+    "color": BLACK,
+    "zorder": 8,
+    "arrowprops": LEADER,
+} | dict.fromkeys(("ha", "va"), "center")
 
 
 class Names(NamedTuple):
@@ -63,24 +59,13 @@ def place_labels(axes: Any, labels: Sequence[tuple[float, float, str]], size: fl
         # points of one name that are nearer than 8 points of 1/72 inch are named once
         if box.padded(3.0).contains(*spot) and not any(np.hypot(*gap) < 8.0 * pixel for gap in gaps):
             inside.append((x, y, name))
-    obstacles = [_curve_points(axes, SETTINGS.sample * pixel)]
+    obstacles = [_curve_points(axes, SAMPLE * pixel)]
     points = np.array([axes.transData.transform((x, y)) for x, y, _ in inside]).reshape(-1, 2)
     obstacles.append(np.repeat(points, 4, axis=0))  # to hide another point is worse than to cross a curve
     taken: list[Array] = [_extent(text) for text in axes.texts]
     written, clear = [], True
     for (x, y, name), point in zip(inside, points, strict=True):
-        text = axes.annotate(
-            name,
-            (x, y),
-            (0, 0),
-            textcoords="offset points",
-            fontsize=size,
-            color=BLACK,
-            zorder=8,
-            ha="center",
-            va="center",
-            arrowprops=LEADER,
-        )
+        text = axes.annotate(name, (x, y), (0, 0), fontsize=size, **LABEL)
         extent = _extent(text)
         half = (extent[2:] - extent[:2]) / 2
         offset, free = _offset(point, half, np.concatenate(obstacles), taken, (box.extents, pixel))
@@ -93,7 +78,7 @@ def place_labels(axes: Any, labels: Sequence[tuple[float, float, str]], size: fl
         text.arrow_patch.set_visible(joined)
         middle = point + offset
         if joined:
-            shares = np.linspace(0, 1, 2 + int(length / (SETTINGS.sample * pixel)))[:, None]
+            shares = np.linspace(0, 1, 2 + int(length / (SAMPLE * pixel)))[:, None]
             obstacles.append(point + shares * offset * (length / np.hypot(*offset)))
         taken.append(np.concatenate([middle - half, middle + half]))
     return Names(written, clear)
@@ -149,10 +134,10 @@ def _offset(
     edges, pixel = space
     # free space around a name
     margin = 2.0 * pixel
-    best, least = np.array([0.0, SETTINGS.distances[0]]), np.inf
-    nearby = obstacles[np.abs(obstacles - point).max(axis=1) < SETTINGS.distances[-1] * pixel]
-    for rank, distance in enumerate(SETTINGS.distances):
-        for angle in np.pi * (0.25 + 2 * np.arange(SETTINGS.directions) / SETTINGS.directions):
+    best, least = np.array([0.0, DISTANCES[0]]), np.inf
+    nearby = obstacles[np.abs(obstacles - point).max(axis=1) < DISTANCES[-1] * pixel]
+    for rank, distance in enumerate(DISTANCES):
+        for angle in np.pi * (0.25 + 2 * np.arange(DIRECTIONS) / DIRECTIONS):
             direction = np.array([np.cos(angle), np.sin(angle)])
             offset = direction * (distance * pixel + _reach(half, direction))
             middle = point + offset
@@ -166,7 +151,7 @@ def _offset(
             cost = hidden + 3 * between + 50 * crossed + 100 * outside + 0.2 * rank
             if cost < least:
                 best, least = offset, cost
-        if least < len(SETTINGS.distances) * 0.2:
+        if least < len(DISTANCES) * 0.2:
             return best, True
     return best, False
 

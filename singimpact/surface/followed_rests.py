@@ -28,8 +28,7 @@ class FollowSettings:
     columns : times s of a rest a period. rows : values of the number between its ends. levels : of these, where two
     rests are looked for, to be followed. fine, rate : step of d, in parts of the period or of `rate` where that is
     less, for flights turn by their own rate too. reach : distance in (s, d) between neighbouring levels below which two
-    points may be one branch. push : velocity by which dx/dv is met. loose : Newton's last step for two rests.
-    small : x - c on the first and the last row from which Newton's method starts. moved : columns from row to row.
+    points may be one branch. push : velocity by which dx/dv is met.
     flat : a_c at both rests of a flight that may go from tangency to tangency.
     """
 
@@ -40,9 +39,6 @@ class FollowSettings:
     rate: float = 2.5
     reach: float = 0.5
     push: float = 1e-4
-    loose: float = 1e-5
-    small: float = 1e-3
-    moved: float = 2.0
     flat: float = 1e-2
 
 
@@ -225,11 +221,12 @@ def _crossings(height: Array, speed: Array) -> list[tuple[int, float]]:
     rows may be as near as one likes; on the outermost ones a small value is enough.
     """
     zeros = [_heights_at_zeros(*pair) for pair in zip(height, speed, strict=True)]
-    crossings = [(i, at) for i in (0, len(zeros) - 1) for at, value in zeros[i] if abs(value) < GRID_OF.small]
+    # on the first and the last row Newton's method starts from small x - c
+    crossings = [(i, at) for i in (0, len(zeros) - 1) for at, value in zeros[i] if abs(value) < 1e-3]
     for i, (before, after) in enumerate(pairwise(zeros)):
         for at, value in before:
             following = min(after, key=lambda each, at=at: abs(each[0] - at), default=None)  # type: ignore[misc]
-            if following is not None and abs(following[0] - at) < GRID_OF.moved and value * following[1] <= 0:
+            if following is not None and abs(following[0] - at) < 2.0 and value * following[1] <= 0:
                 crossings.append((i, at if abs(value) < abs(following[1]) else following[0]))
     return crossings
 
@@ -269,7 +266,8 @@ def _rests_near(flights: RestFlights, starts: Array) -> Array:
         places = places[sound]
         moves = np.clip(-np.einsum("ijk,ik->ij", np.linalg.pinv(matrices), values[sound]), -GRID.longest, GRID.longest)
         places = places + moves
-        settled = np.abs(moves).max(axis=1, initial=0) < GRID_OF.loose
+        # Newton's last step for two rests
+        settled = np.abs(moves).max(axis=1, initial=0) < 1e-5
         done.append(places[settled])
         places = places[~settled & (places[:, 1] > GRID.least / 2)]
     return np.vstack([np.empty((0, 2)), *done])

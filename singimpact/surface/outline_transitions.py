@@ -10,7 +10,7 @@ P and Pi_0 together are the preimage of one curve of flights, those at rest at t
 """
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -32,21 +32,12 @@ from singimpact.surface.rest_flights import RestFlights
 from singimpact.surface.swan_families import STEPS, Family, Transition, bracketed, in_first_period, swans_met, told
 from singimpact.surface.two_rests import Rests, linear_rests, newton
 
-
-@dataclass(frozen=True)
-class TransitionSettings:
-    """same : relative distance below which two of them are one; Newton's method ends at a thousandth of it.
-    samples : of a flight in the window of t. flat : a Hessian below this share of its
-    terms decides nothing. double : of t, to which Newton's method meets a double zero.
-    """
-
-    samples: int = 400
-    same: float = 1e-9
-    flat: float = 1e-6
-    double: float = 1e-2
-
-
-SETTINGS = TransitionSettings()
+# Samples of a flight in the window of t
+FLIGHT_SAMPLES = 400
+# Relative distance below which two of them are one; Newton's method ends at a thousandth of it
+SAME = 1e-9
+# A Hessian below this share of its terms decides nothing; of t, to which Newton's method meets a double zero
+FLAT, DOUBLE = 1e-6, 1e-2
 
 
 # What is looked for; "tangency" are lips, beaks and flights from tangency to tangency.
@@ -220,7 +211,7 @@ def _with_more_rests(
     met = [meeting for meeting in met_rests(family, ends, times, wanted) if ends[0] <= meeting.value <= ends[1]]
     events = []
     # both ends of the window of t belong to it, of which one may be a period
-    low, high = (end * (1 + np.sign(end) * side * SETTINGS.same) for side, end in zip((-1, 1), times, strict=True))
+    low, high = (end * (1 + np.sign(end) * side * SAME) for side, end in zip((-1, 1), times, strict=True))
     for meeting in met:
         gap, kind = meeting.gaps[-1], meeting.kind
         if kind == "tacnode":
@@ -274,7 +265,7 @@ def _two(tau: float, t: float) -> tuple[float, float]:
 
 def _is_that(found: Transition, both: Rests) -> bool:
     """Whether what Newton's method met is the flight from tangency to tangency, a double zero of its equations."""
-    return abs(found.value - both.value) < 1e-6 and abs(abs(found.t) - both.gaps[0]) < SETTINGS.double
+    return abs(found.value - both.value) < 1e-6 and abs(abs(found.t) - both.gaps[0]) < DOUBLE
 
 
 def _each_once(found: Iterable[Transition], ends: tuple[float, float]) -> list[Transition]:
@@ -291,7 +282,7 @@ def _same(one: Transition, other: Transition) -> bool:
     if len(one.rests) != len(other.rests):
         return False
     pairs = zip((one.value, one.tau, one.t, *_gaps(one)), (other.value, other.tau, other.t, *_gaps(other)), strict=True)
-    return all(abs(a - b) < SETTINGS.same for a, b in pairs)
+    return all(abs(a - b) < SAME for a, b in pairs)
 
 
 def _gaps(found: Transition) -> list[float]:
@@ -307,8 +298,8 @@ def _swallowtails(family: Family, swans: list[Transition], times: tuple[float, f
 
 def _samples(flights: RestFlights, tau: float, times: tuple[float, float]) -> tuple[Array, Array]:
     """t != 0 and y there, of the flight from rest at a zero of a_c; the first samples beside t = 0 are left out."""
-    t = np.linspace(*times, SETTINGS.samples)
-    t = t[np.abs(t) > 4 * (times[1] - times[0]) / SETTINGS.samples]
+    t = np.linspace(*times, FLIGHT_SAMPLES)
+    t = t[np.abs(t) > 4 * (times[1] - times[0]) / FLIGHT_SAMPLES]
     return t, flights.grid(np.array([tau]), t)[:, 0]
 
 
@@ -376,6 +367,6 @@ def _lips_or_beaks(flights: RestFlights, point: Array) -> str:
     (tt, tm), (mt, mm) = (gradient[0] - gradient[1]) / (2 * h), (gradient[2] - gradient[3]) / (2 * h)
     mixed = (tm + mt) / 2
     determinant = tt * mm - mixed**2
-    if abs(determinant) <= SETTINGS.flat * (abs(tt * mm) + mixed**2):
+    if abs(determinant) <= FLAT * (abs(tt * mm) + mixed**2):
         return "undecided"
     return "lips" if determinant > 0 else "beaks"

@@ -197,25 +197,12 @@ def _linked(rows: list[list[tuple[float, float, Transition]]]) -> list[list[tupl
 Launch = tuple[float, float] | None
 
 
-@dataclass(frozen=True)
-class SightSettings:
-    """Settings of the search for the visible part of a flight.
-
-    flat : a_c or a_c' below this, of the largest a_c, is zero: rests are known to 1e-12. step : of the flight in time.
-    aside : of a rest, where x - c is too flat to be compared. near : of x - c, below which a minimum is one more rest.
-    slow : a launch below this velocity, in parts of the largest a_c, is one more rest. periods : of the forcing that
-    the flight from a swan is run back; other flights are run back as `first_hit` says.
-    """
-
-    flat: float = 1e-7
-    step: float = 2e-3
-    aside: float = 0.02
-    near: float = 1e-8
-    slow: float = 1e-7
-    periods: int = 40
-
-
-SIGHT = SightSettings()
+# a_c or a_c' below this, of the largest a_c, is zero: rests are known to 1e-12
+FLAT = 1e-7
+# Of a rest, where x - c is too flat to be compared
+ASIDE = 0.02
+# x - c below which a minimum is one more rest; launches below this velocity, in parts of the largest a_c, are too
+NEAR, SLOW = 1e-8, 1e-7
 # What a visible transition does in one direction of the number; in the other one it is undone.
 EFFECTS = tomllib.loads(Path(__file__).with_name("effects.toml").read_text(encoding="utf-8"))
 BEYOND = "no first hit changes between impacts with this wall: the flight meets the other one"
@@ -268,7 +255,7 @@ def _seen(
         return True, None
     launch = _launch(model, rests[0], jets[:, 0], size, len(rests))
     if event.kind == "swallowtail":
-        there = launch is not None and abs(launch[0] - rests[0] - event.t) < SIGHT.aside
+        there = launch is not None and abs(launch[0] - rests[0] - event.t) < ASIDE
         return there, launch if there else None
     return True, launch
 
@@ -276,39 +263,41 @@ def _seen(
 def _from_above(jet: Array, first: bool, last: bool) -> bool:
     """Whether the flight is above the wall before a rest, if it is not the first, and after it, if not the last."""
     a, slope, curvature = jet.tolist()
-    if abs(a) > SIGHT.flat:
+    if abs(a) > FLAT:
         return bool(a > 0)
-    return (first or slope < 0) and (last or slope > 0) if abs(slope) > SIGHT.flat else bool(curvature > 0)
+    return (first or slope < 0) and (last or slope > 0) if abs(slope) > FLAT else bool(curvature > 0)
 
 
 def _clear(model: Oscillator, start: float, end: float) -> bool | None:
     """Whether x > c between two rests; None where a minimum touches c."""
-    t = np.linspace(0, end - start, max(40, int((end - start) / SIGHT.step)))[1:]
-    t = t[(t > SIGHT.aside) & (t < end - start - SIGHT.aside)]
+    # steps of the flight in time
+    t = np.linspace(0, end - start, max(40, int((end - start) / 2e-3)))[1:]
+    t = t[(t > ASIDE) & (t < end - start - ASIDE)]
     if t.size < 3:
         return True  # one arch of a flight that is left and reached from above
     x = many_paths(model, np.array([start]), np.zeros(1), [t])[0][:, 0]
     before, at, after = x[:-2], x[1:-1], x[2:]
     least = at - (after - before) ** 2 / np.where((bend := before - 2 * at + after) > 0, 8 * bend, np.inf)
     inner = least[(at <= before) & (at <= after)]
-    if (x < -SIGHT.near).any() or (inner < -SIGHT.near).any():
+    if (x < -NEAR).any() or (inner < -NEAR).any():
         return False
-    return None if (inner < SIGHT.near).any() else True
+    return None if (inner < NEAR).any() else True
 
 
 def _launch(model: Oscillator, rest: float, jet: Array, size: float, count: int) -> Launch:
     """(tau, v) of the launch from which a rest is reached; None where none is, or at the foot of gamma."""
-    if jet[0] > SIGHT.flat:
+    if jet[0] > FLAT:
         hit = first_hit(backwards(model), -rest, 0.0)
-        if int(hit.status) != Status.hit or not -float(hit.velocity) > SIGHT.slow * size:
+        if int(hit.status) != Status.hit or not -float(hit.velocity) > SLOW * size:
             return None
         return rest - float(hit.flight_time), -float(hit.velocity)
-    return None if count > 1 and jet[1] > SIGHT.flat else _back_from_swan(model, rest, size)
+    return None if count > 1 and jet[1] > FLAT else _back_from_swan(model, rest, size)
 
 
 def _back_from_swan(model: Oscillator, rest: float, size: float) -> Launch:
-    reach = SIGHT.periods * (as_float(model.period) if model.period is not None else 1.0)
-    t = -np.arange(10 * SIGHT.aside, reach, SIGHT.aside)
+    # periods that the flight from a swan is run back; other flights are run back as `first_hit` says
+    reach = 40 * (as_float(model.period) if model.period is not None else 1.0)
+    t = -np.arange(10 * ASIDE, reach, ASIDE)
     x = many_paths(model, np.array([rest]), np.zeros(1), [t])[0][:, 0]
     under = np.flatnonzero(~(x > 0))
     if not under.size or under[0] == 0 or not np.isfinite(x[under[0]]):
@@ -320,7 +309,7 @@ def _back_from_swan(model: Oscillator, rest: float, size: float) -> Launch:
 
     at = bracketed(ends, float(t[under[0] - 1]), float(t[under[0]]))
     velocity = ends(at)[1]
-    return (rest + at, velocity) if velocity > SIGHT.slow * size else None
+    return (rest + at, velocity) if velocity > SLOW * size else None
 
 
 def bracketed(ends: Callable[[float], tuple[float, float]], low: float, high: float) -> float:

@@ -27,7 +27,6 @@ class TraceSettings:
     halvings: int = 10  # of a chord at most
     deviation: float = 0.5  # of a chord from the curve, in units of the resolution of the window
     longest: float = 6.0  # chord length, in the same units: the end of a visible part is located to within one chord
-    turn: float = 0.9  # smallest cosine of the angle between the tangents of two steps
     across: float = (
         0.8  # largest sine between a chord of the contour lines and the curve, at the end where it is smaller
     )
@@ -160,7 +159,8 @@ def _walked(start: Array, along: Array, side: int, gradient: Gradient, window: W
     for _ in range(2000):
         point, _, step, slope = newton((line[-1] + h * ahead)[None], gradient)
         turned = side * _along(slope[0])
-        if step[0] > SETTINGS.close or ahead @ turned < SETTINGS.turn or np.hypot(*(point[0] - line[-1])) > 2 * h:
+        # a step ends where the cosine of the angle between its tangents is smaller
+        if step[0] > SETTINGS.close or ahead @ turned < 0.9 or np.hypot(*(point[0] - line[-1])) > 2 * h:
             h /= 2
             continue
         line.append(point[0])

@@ -47,8 +47,7 @@ class GridSettings:
     """Settings of the grid on which events are met.
 
     step : of the times s and d. least : d from which on two rests are told apart; nearer ones begin at a positive swan.
-    start : of the grid, off 0, where models have symmetries. settled : Newton's last step. most : of its steps.
-    longest : Newton's longest step. aside : of its differences. beyond : the period, for a zero on its edge.
+    most : of Newton's steps. longest : Newton's longest step. aside : of its differences.
     near : of d on neighbouring values of s, for the same branch of F = 0. jump : of c there.
     whole : of d/T, from a whole number, that is none. same : events nearer are one. wide : F is no zero above this.
     degenerate : distance from a flight from tangency to tangency below which the equations of one tangency have a
@@ -57,12 +56,9 @@ class GridSettings:
 
     step: float = 0.02
     least: float = 0.05
-    start: float = 3e-4
-    settled: float = 1e-12
     most: int = 40
     longest: float = 0.2
     aside: float = 1e-6
-    beyond: float = 0.1
     near: float = 0.15
     jump: float = 0.3
     whole: float = 1e-7
@@ -199,14 +195,16 @@ class LinearRests:
         low = max(GRID.least, shortest - GRID.step)
         return (
             np.arange(0, self.turn + 2 * GRID.step, GRID.step) - GRID.step / 19,
-            np.arange(low, longest + 2 * GRID.step, GRID.step) + GRID.start,
+            # off 0, where models have symmetries
+            np.arange(low, longest + 2 * GRID.step, GRID.step) + 3e-4,
         )
 
     def _in_cells(self, values: tuple[Array, Array], s: Array, d: Array, missed: Callable[[Array], Array]) -> Array:
         """Zeros of two functions, shape (n, 2): Newton's method from each cell over which both change sign."""
         i, j = np.nonzero(_changes(values[0]) & _changes(values[1]))
         met = newton(missed, np.stack([s[i], d[j]], axis=1) + GRID.step / 2)
-        inside = (np.abs(met[:, 0] - self.turn / 2) < self.turn / 2 + GRID.beyond) & (met[:, 1] > GRID.least)
+        # beyond the period, for a zero on its edge
+        inside = (np.abs(met[:, 0] - self.turn / 2) < self.turn / 2 + 0.1) & (met[:, 1] > GRID.least)
         return distinct(met[inside & ~is_whole(met[:, 1] / self.turn)])
 
     def triples(self, longest: float) -> list[Rests]:
@@ -266,7 +264,7 @@ def newton(missed: Callable[[Array], Array], starts: Array) -> Array:
         places, matrices, values = places[sound], matrices[sound], values[sound]
         moves = -np.einsum("ijk,ik->ij", np.linalg.pinv(matrices), values)
         places = places + np.clip(moves, -GRID.longest, GRID.longest)
-        done = np.abs(moves).max(axis=1, initial=0) < GRID.settled * (1 + np.abs(places).max(axis=1, initial=0))
+        done = np.abs(moves).max(axis=1, initial=0) < 1e-12 * (1 + np.abs(places).max(axis=1, initial=0))
         done &= np.abs(values).max(axis=1, initial=0) < GRID.wide  # no move is made where the derivative vanishes
         settled.append(places[done])
         places = places[~done]
