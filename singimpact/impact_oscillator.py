@@ -362,6 +362,7 @@ class ImpactOscillator(Oscillator):
         Returns
         -------
         list of PeriodicOrbit : with `.complete`, True if it is shown that there are no others, and `.notes`, why not.
+            Of a family, `osc.over(...).periodic(n, k)`, the orbits of all models in one list of arrays.
 
         Examples
         --------

@@ -17,9 +17,11 @@ from singimpact.inputs import InputError, checked_keywords, refuse, require_know
 from singimpact.oscillator.model import Oscillator, require_model
 
 if TYPE_CHECKING:
+    from singimpact.branches.family_orbits import FamilyOrbits
     from singimpact.contact.swans import SwanPoints
     from singimpact.dynamics.basins_of_attraction import Basins
     from singimpact.dynamics.basins_over import BasinsOver
+    from singimpact.dynamics.families import OscillatorFamily
     from singimpact.surface.classification import Classification
     from singimpact.surface.curve import Curve
 
@@ -115,7 +117,7 @@ def basins(
         without it) or "upper".
     moving : `over`, a number of the model as `bifurcation` takes it, and `between`, its ends: the shares of the basins
         over it. `values` of the number (50), and at each `states` (400), drawn evenly from the window by `seed` (0), at
-        the same places of it. `jump` (0.1) : attractors of two neighbouring values are one where they are of one class
+        the same places of it. `jump` (0.25) : attractors of two neighbouring values are one where they are of one class
         and their states are nearer, in periods and in highest velocities. A case is a value; `size` has no meaning.
 
     Returns
@@ -158,7 +160,11 @@ def basins(
         return basins(osc, tau, v, size, executor, output, impacts, wall)
     from singimpact.dynamics.basins_over import basins_over
 
-    require_known("argument of basins", moving, ("over", "between", "values", "states", "seed", "jump"))
+    require_known(
+        "argument of basins",
+        moving,
+        ["over", "between", "values", "states", "seed", "jump", "window", "size", "impacts"],
+    )
     moving = {"over": None, "between": None, "executor": executor, "output": output} | moving
     return basins_over(osc, window=(tau, v), impacts=impacts, wall=wall, **moving)
 
@@ -236,8 +242,13 @@ def grown_gamma(osc: Oscillator, window: Any = None, tau: Any = None, *, wall: o
     return grown_gamma(osc, window, tau)
 
 
-def _of_models(method: Callable[P, T]) -> Callable[P, T]:
-    """A method of the model as a function, whose first argument is checked; documented at the method."""
+def _of_models(method: Callable[P, T], of_family: Callable[..., Any] | None = None) -> Callable[P, T]:
+    """A method of the model as a function, whose first argument is checked; documented at the method.
+
+    Parameters
+    ----------
+    of_family : takes its place where the first argument is a family (`osc.over`).
+    """
     takes = signature(method)
     first, *others = takes.parameters.values()
     takes = takes.replace(parameters=[first.replace(name="osc"), *others])
@@ -245,14 +256,24 @@ def _of_models(method: Callable[P, T]) -> Callable[P, T]:
     @wraps(method)
     def study(*values: P.args, **named: P.kwargs) -> T:
         bound = takes.bind(*values, **named)
-        require_model("osc", bound.arguments["osc"])
+        osc = bound.arguments["osc"]
+        if of_family is not None and hasattr(osc, "numbers"):
+            return of_family(*values, **named)  # type: ignore[no-any-return]
+        require_model("osc", osc)
         return method(*bound.args, **bound.kwargs)
 
     study.__signature__ = takes  # type: ignore[attr-defined]
     return checked_keywords(study)
 
 
-orbit, periodic = _of_models(ImpactOscillator.orbit), _of_models(ImpactOscillator.periodic)
+def _periodic_of_family(osc: OscillatorFamily, *values: Any, **named: Any) -> FamilyOrbits:
+    from singimpact.branches.family_orbits import orbits_of_members
+
+    return orbits_of_members(osc, *values, **named)
+
+
+orbit = _of_models(ImpactOscillator.orbit)
+periodic = _of_models(ImpactOscillator.periodic, _periodic_of_family)
 chatter_limit = _of_models(ImpactOscillator.chatter_limit)
 certified_gamma = _of_models(ImpactOscillator.certified_gamma)
 

@@ -234,10 +234,14 @@ class _Search:
         k = shares.index(max(shares))
         if shares[k] < self.settings.least:
             return []
-        # cut off the middle: zeros like to lie at places of symmetry
-        low, high = box[k]
-        at = low + (high - low) * self.settings.cut
-        return [(*box[:k], ends, *box[k + 1 :]) for ends in ((low, at), (at, high))]
+        return cut(box, k, self.settings.cut)
+
+
+def cut(box: Box, k: int, share: Fraction) -> list[Box]:
+    """Both parts of a box that is cut across a side, off its middle: zeros like to lie at places of symmetry."""
+    low, high = box[k]
+    at = low + (high - low) * share
+    return [(*box[:k], ends, *box[k + 1 :]) for ends in ((low, at), (at, high))]
 
 
 def overlap(one: Place, other: Place) -> bool:

@@ -104,8 +104,8 @@ class Method:
 
     Parameters
     ----------
-    name, setting : as the table shows them; one that begins with "singimpact" calls public names only, "kernel" is a
-        private function of the package. run : gives an answer a problem; None or nan where it has none.
+    name, setting : as the table shows them; one that begins with "singimpact" calls public names only. run : gives an
+        answer a problem; None or nan where it has none.
     epsilon : of the arithmetic; answers may be off by ten times their condition times this.
     problems : by which the time of a run is divided; without it by its answers.
     draw : makes other problems for every timed call, outside the clock; `run` takes them. The first ones are judged.

@@ -6,6 +6,7 @@ lose this symmetry where the map of half an orbit, with x -> -x, doubles its per
 over the parameter (transcritical) or none (pitchfork); the second branch is reached by one step across the first.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
@@ -99,7 +100,7 @@ def _alternating(once: AnyClosing, twice: AnyClosing, at: Array) -> list[Periodi
     assert isinstance(twice, Closing)
     n, loop, parameter = once.n, once.at(at), float(at[-1])
     # the eigenvector of -1: the doubled orbit alternates along it
-    vector = np.linalg.svd(loop.slope[:, : 2 * n] - 2 * loop.wrap)[2][-1]
+    vector = np.linalg.svd(loop.at_multiplier(-1.0))[2][-1]
     point = repeated(once, twice, at)
     moved = np.concatenate([vector[:n], -vector[:n], vector[n:], -vector[n:], [0.0]])
     scales = twice.scales(point)
@@ -234,22 +235,15 @@ def _doubled_along(curve: Curve, start: Point, half: AnyClosing) -> Array | None
     """The point next to the start of a curve of orbits at which they double; None where it is not reached."""
     from scipy.optimize import root_scalar
 
-    points = {0.0: start.at}
+    def secant(value: Callable[[float], float]) -> float:
+        def near(length: float) -> float:
+            return value(length) if abs(length) < 1 else np.nan
 
-    def test(length: float) -> float:
-        if length not in points:
-            step = curve.beyond(start, length) if abs(length) < 1 else None
-            if step is None:
-                raise ArithmeticError
-            points[length] = step[0].at
-        return half.at(points[length]).characteristic().doubling
+        solution = root_scalar(near, method="secant", x0=0, x1=1e-6, xtol=SETTINGS.arrived, maxiter=SETTINGS.secants)
+        return float(solution.root)
 
-    try:
-        root = root_scalar(test, method="secant", x0=0.0, x1=1e-6, xtol=SETTINGS.arrived, maxiter=SETTINGS.secants).root
-        test(root)
-    except ArithmeticError:
-        return None
-    return points[root]
+    doubling = curve.zero({0.0: start}, lambda _, point: half.at(point.at).characteristic().doubling, secant)
+    return None if doubling is None else doubling[1].at
 
 
 def _crossing(search: StepSearch, crossing: Crossing) -> BranchPoint | None:

@@ -16,10 +16,9 @@ from singimpact.algebra.numbers import Array
 from singimpact.branches.branch_points import BranchPoint, branch_point
 from singimpact.branches.closing import Closing
 from singimpact.branches.continuation import Curve, Point
-from singimpact.branches.events import KINDS, Event, EventKind
+from singimpact.branches.events import KINDS, Event, EventKind, kind_of
 from singimpact.branches.events.meeting_branches import PITCHFORK
 from singimpact.branches.events.orbit_state import Test
-from singimpact.branches.events.table import kind_of
 from singimpact.branches.orbit_curve import SETTINGS, OrbitCurve
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.solutions import AnyClosing, orbit_of

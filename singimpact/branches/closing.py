@@ -85,12 +85,14 @@ class Loop:
     clocked: bool = True
     rounded: bool = False
 
+    def at_multiplier(self, multiplier: complex) -> Array:
+        """J(mu), singular where mu is a multiplier of the orbit; J(1) is the slope."""
+        return np.asarray(self.slope[:, : len(self.miss)] + (multiplier - 1) * self.wrap)
+
     def determinant(self, multiplier: float) -> float:
-        """det(J(mu)), which vanishes where mu is a multiplier of the orbit; J(1) is the slope."""
-        square = self.slope[:, : len(self.miss)]
-        if not np.isfinite(square).all():
-            return np.nan
-        return float(np.linalg.det(square + (multiplier - 1) * self.wrap))
+        """det(J(mu)), which vanishes where mu is a multiplier of the orbit."""
+        square = self.at_multiplier(multiplier)
+        return float(np.linalg.det(square)) if np.isfinite(square).all() else np.nan
 
     def characteristic(self) -> Characteristic:
         """a_0, a_1, a_2 with det(J(mu)) = a_0 + a_1 mu + a_2 mu^2; a_2 = 0 where the last flight ends in a graze."""

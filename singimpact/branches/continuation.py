@@ -146,19 +146,36 @@ class Curve:
         self.note = f"{most} points are spent: the curve goes on (points=)"
 
     def located(
-        self, here: Point, length: float, test: Callable[[Point], float | None], ends: tuple[float, float]
+        self, here: Point, length: float, test: Callable[[Point], float], ends: tuple[float, float]
     ) -> tuple[float, Point] | None:
         """Where a test of points changes sign along a step: the part of its length, and the point.
 
         Parameters
         ----------
-        here, length : the step. test : None or nan where it has no value. ends : its values at both ends of the step.
+        here, length : the step. test : nan where it has no value. ends : its values at both ends of the step.
 
         Returns
         -------
         None : the test, or the curve, has no value on the way.
         """
-        points: dict[float, Point] = {0.0: here}
+        return self.zero(
+            {0.0: here}, lambda _, point: test(point), lambda value: root_between(value, 0.0, length, ends)
+        )
+
+    def zero(
+        self,
+        points: dict[float, Point],
+        test: Callable[[float, Point], float],
+        method: Callable[[Callable[[float], float]], float],
+    ) -> tuple[float, Point] | None:
+        """The zero of a test of points of the curve, and the point there; None where either has no value on the way.
+
+        Parameters
+        ----------
+        points : by their distance, the first of which is that from which the curve is followed; others are added.
+        test : of the distance and the point. method : finds a zero of a function of the distance.
+        """
+        here = next(iter(points.values()))
 
         def value(along: float) -> float:
             if along not in points:
@@ -166,11 +183,10 @@ class Curve:
                 if corrected is None:
                     raise ArithmeticError
                 points[along] = corrected[0]
-            tested = test(points[along])
-            return np.nan if tested is None else tested
+            return test(along, points[along])
 
         try:
-            along = root_between(value, 0.0, length, ends)
+            along = method(value)
             value(along)
         except ArithmeticError:
             return None

@@ -14,6 +14,13 @@ ROUND = (1.0, 0.0)  # the circumference of a cylinder of placed points, and none
 TREES = 8  # more trees than this are joined to one: it is searched faster
 
 
+def apart(differences: Array, sides: Array) -> Array:
+    """Lengths of differences of states, the shortest way round the cylinder."""
+    away = differences / sides
+    away[..., 0] -= np.rint(away[..., 0])
+    return np.asarray(np.hypot(away[..., 0], away[..., 1]))
+
+
 def placed(points: Array, sides: Array) -> Array:
     """Phases in [0, 1) and velocities, in units of the sides.
 

@@ -22,6 +22,10 @@ from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION, UPPER, value_of, with_number
 from singimpact.result import Result, numbered
 
+# Names of points of codimension two in MatCont and MatContM.
+MATCONT = {"cusp": "CP", "generalized flip": "GPD", "Chenciner": "CH", "fold and doubling": "LPPD"}
+MATCONT |= {f"1:{q} resonance": f"R{q}" for q in (1, 2, 3, 4)}
+POLES = ("cusp", "generalized flip", "Chenciner")  # tests that change sign at poles too
 HALVES = 1e-6  # halves of an orbit at a pitchfork that differ by more, in scaled unknowns, are not equal
 # Half the width of a central difference, in scaled unknowns: the derivative then has a relative error of 1e-10.
 NUDGE = 1e-6
@@ -34,7 +38,9 @@ class Special(Result):
     Parameters
     ----------
     kind : "cusp" (two folds meet), "resonant graze" (folds and doublings leave the curve of grazes), "fold at a graze",
-        "doubling at a graze", "degenerate graze" (a_c = 0 there), "two grazes", "graze", "fold and doubling".
+        "doubling at a graze", "degenerate graze" (a_c = 0 there), "two grazes", "graze", "fold and doubling",
+        "generalized flip" and "Chenciner" (the first coefficient of the normal form of a doubling or torus is 0),
+        "1:1 resonance" to "1:4 resonance" (both multipliers are 1, or -1, or at angles of 120 or 90 degrees).
     parameters : the two numbers. index : it lies after this point of the curve.
     """
 
@@ -42,9 +48,15 @@ class Special(Result):
     parameters: tuple[float, float]
     index: int = 0
 
+    @property
+    def label(self) -> str:
+        """The name in MatCont: CP, GPD, CH, LPPD, R1 to R4; empty where it has none, such as at grazes."""
+        return MATCONT.get(self.kind, "")
+
     def as_dict(self) -> dict[str, Any]:
-        """Kind, both numbers, and the point of the curve after which it lies."""
-        return {"kind": self.kind, "parameters": list(self.parameters), "after_point": self.index}
+        """Kind, name in MatCont, both numbers, and the point of the curve after which it lies."""
+        names = {"kind": self.kind, "label": self.label}
+        return names | {"parameters": list(self.parameters), "after_point": self.index}
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +112,9 @@ class EventCurve(OfImpacts):
             f"<curve of {self.kind} events of ({self.impacts}, {self.k}) orbits in {' and '.join(self.over)}, "
             f"{len(self)} points"
         ]
-        lines += [f"  {each.kind} at ({each.parameters[0]:.12g}, {each.parameters[1]:.12g})" for each in self.special]
+        for point in self.special:
+            label = point.label and f" ({point.label})"
+            lines.append(f"  {point.kind}{label} at ({point.parameters[0]:.12g}, {point.parameters[1]:.12g})")
         return "\n".join([*lines, *(f"  {note}" for note in self.notes)]) + ">"
 
 
@@ -114,7 +128,7 @@ def event_curve(
     points: int = 1000,
     step: float | None = None,
 ) -> EventCurve:
-    """The curve of a fold, doubling, graze, hidden impact, onset of rest or pitchfork in two parameters.
+    """The curve of a fold, doubling, torus, graze, hidden impact, onset of rest or pitchfork in two parameters.
 
     Parameters
     ----------
@@ -125,6 +139,8 @@ def event_curve(
     Returns
     -------
     EventCurve : with its points of codimension two, located to rounding; cusps to 1e-9, for their test is a difference.
+        Beyond a 1:1 or 1:2 resonance the multipliers on a curve of tori are real, with the product 1: such orbits are
+        neutral saddles, and no torus begins at them.
 
     Examples
     --------
@@ -261,8 +277,8 @@ class _Walk(OrbitCurve):
         state = self.state(point.at)
         return self.kind.degenerate(state, partial(self.gradient, state))
 
-    def _one_test(self, name: str, point: Point) -> float | None:
-        return self._tests(point).get(name)
+    def _one_test(self, name: str, point: Point) -> float:
+        return self._tests(point).get(name, np.nan)
 
     def _special(
         self, curve: Curve, here: Point, length: float, tests: tuple[dict[str, float], dict[str, float]]
@@ -277,7 +293,7 @@ class _Walk(OrbitCurve):
             if located is None:
                 continue
             along, point = located
-            if not (name == "cusp" and abs(self._tests(point)[name]) > 0.1 * max(abs(value), abs(later))):
+            if not (name in POLES and abs(self._tests(point)[name]) > 0.1 * max(abs(value), abs(later))):
                 crossings.append((along, name.rstrip("0123456789 "), point))
         return _merged(sorted(crossings, key=lambda crossing: crossing[0]), length)
 

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from singimpact.algebra.numbers import Array
-from singimpact.branches.cylinder import meetings
+from singimpact.branches.cylinder import apart, meetings
 from singimpact.branches.manifold import Manifold, manifold
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.saddle_arcs import LocalArc, checked_saddle
@@ -272,9 +272,8 @@ class _Search:
         """Whether a known orbit has an impact at a crossing, after as many images."""
         if away.generation >= len(states):
             return False
-        gap = (states[away.generation] - point) / self.unstable.window.sides
-        gap[0] -= np.rint(gap[0])
-        return bool(np.hypot(*gap) < 0.5 * self.unstable.window.resolution)
+        gap = apart(states[away.generation] - point, self.unstable.window.sides)
+        return bool(gap < 0.5 * self.unstable.window.resolution)
 
     def _same(self, one: Crossing, other: Crossing) -> bool:
         turn = self.unstable.arc.multiplier
@@ -321,11 +320,9 @@ class _Search:
             return "Newton's method leaves v > 0"
         miss, slopes = self._missed(states)
         residual = float(np.abs(miss / sides).max())
-        moved = (states[expected[0]] - expected[1]) / sides
-        moved[0] -= np.rint(moved[0])
         if not residual < SETTINGS.residual:
             return "Newton's method does not end"
-        if not np.hypot(*moved) < SETTINGS.moved * self.unstable.window.resolution:
+        if not apart(states[expected[0]] - expected[1], sides) < SETTINGS.moved * self.unstable.window.resolution:
             return "Newton's method leaves them for another one"
         if not (np.abs(s) > 1e-12 * np.array([self.unstable.arc.size, self.stable.arc.size])).all():
             return "Newton's method ends in the saddle"
@@ -424,9 +421,7 @@ class _Search:
             np.stack([np.asarray(each.tau, dtype=float), np.asarray(each.v, dtype=float)], axis=1)
             for each in (self.unstable.saddle, self.stable.saddle)
         ]
-        away = (states[:, None] - np.vstack(both)) / self.unstable.window.sides
-        away[..., 0] -= np.rint(away[..., 0])
-        return np.asarray(np.hypot(*away.transpose(2, 0, 1)).min(axis=1))
+        return np.asarray(apart(states[:, None] - np.vstack(both), self.unstable.window.sides).min(axis=1))
 
 
 def _unit(vector: Array) -> Array:

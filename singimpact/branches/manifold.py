@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.numbers import Array, as_float, constant
-from singimpact.branches.cylinder import Nearby, distances
+from singimpact.branches.cylinder import Nearby, apart, distances
 from singimpact.branches.orbits import Notes, PeriodicOrbit
 from singimpact.branches.saddle_arcs import LocalArc, checked_saddle, directions, local_arc
 from singimpact.branches.solutions import orbit_period
@@ -306,9 +306,8 @@ class _Grown:
     def _at_saddle(self, points: Array) -> bool:
         """Whether a piece has not come away from the orbit yet: the curve there is shorter than the resolution."""
         places = np.stack([np.asarray(part, dtype=float) for part in (self.saddle.tau, self.saddle.v)], axis=1)
-        away = (points[:, None] - places) / self.window.sides
-        away[..., 0] -= np.rint(away[..., 0])
-        return bool((np.hypot(*away.transpose(2, 0, 1)).min(axis=1) < self.window.resolution).all())
+        away = apart(points[:, None] - places, self.window.sides)
+        return bool((away.min(axis=1) < self.window.resolution).all())
 
     def _adds(self, points: Array) -> bool:
         """Whether a piece is away from the curve so far; so are pieces above the window, which may return to it."""
@@ -360,9 +359,8 @@ class _Grown:
         are one flight, up to a graze.
         """
         slow, fast = sides[np.argsort(sides[:, 1])]
-        away = (self._step(slow[None], image)[0] - fast) / self.window.sides
-        away[0] -= np.rint(away[0])
-        return bool(np.hypot(*away) < SETTINGS.touching * self.window.resolution)
+        away = apart(self._step(slow[None], image)[0] - fast, self.window.sides)
+        return bool(away < SETTINGS.touching * self.window.resolution)
 
     def _rests(self, points: Array) -> bool:
         """Whether a piece is pressed to the wall, slower than the resolution shows."""

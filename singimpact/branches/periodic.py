@@ -23,11 +23,11 @@ from singimpact.algebra.precision import balls_at, digits_at, for_user
 from singimpact.branches.ball_closing import BallClosing, return_slope
 from singimpact.branches.closing import Closing
 from singimpact.branches.enclosed_closing import closed_boxes
+from singimpact.branches.events.meeting_branches import repeats
 from singimpact.branches.krawczyk import Krawczyk
-from singimpact.branches.limit_cycle import cycles_found
 from singimpact.branches.orbits import PeriodicOrbit, PeriodicOrbits, same_states
 from singimpact.branches.resting import chatter_orbits, free_orbits
-from singimpact.branches.solutions import closing_of, orbit_at
+from singimpact.branches.solutions import closing_of, cycles_found, orbit_at
 from singimpact.branches.starts import closed_from, grid_of_starts, phases_and_speeds, two_impacts
 from singimpact.branches.wall_closing import closed_words, closing_of_word, word_of
 from singimpact.flights.enclosures.equation import Refused
@@ -282,27 +282,11 @@ def _judged_points(osc: Oscillator, closing: Closing, points: list[Array]) -> li
     for point in points:
         if not (osc.plastic or point[n : 2 * n].max() > SETTINGS.least) or point[n : 2 * n].min() < -SETTINGS.least:
             continue
-        orbit = orbit_at(closing, point, osc)
-        if not _sooner(orbit, closing) and not any(same_states(orbit, other, SETTINGS.apart) for other in distinct):
+        orbit, fast = orbit_at(closing, point, osc), max(float(point[n : 2 * n].max()), 1e-300)
+        once = repeats(closing, point, SETTINGS.apart, fast) == 1
+        if once and not any(same_states(orbit, other, SETTINGS.apart) for other in distinct):
             distinct.append(orbit)
     return sorted(distinct, key=lambda orbit: (float(orbit.tau[0]), float(orbit.v[0])))
-
-
-def _sooner(orbit: PeriodicOrbit, closing: Closing) -> bool:
-    """Whether an orbit closes after fewer impacts."""
-    n, k, period = closing.n, closing.k, orbit.period / closing.k
-    fast = max(float(np.max(orbit.v)), 1e-300)
-    for fewer in range(1, n):
-        if n % fewer or (k * fewer) % n:
-            continue
-        if orbit.wall is not None and (np.roll(orbit.wall, -fewer) != orbit.wall).any():
-            continue
-        gaps = np.abs(np.roll(orbit.tau, -fewer)[: n - fewer] - orbit.tau[: n - fewer] - k * fewer / n * period)
-        if gaps.max(initial=0.0) < SETTINGS.apart * period and (
-            np.abs(np.roll(orbit.v, -fewer) - orbit.v).max() < SETTINGS.apart * fast
-        ):
-            return True
-    return False
 
 
 # ---- in many digits, by Newton's method in balls: nothing is proved

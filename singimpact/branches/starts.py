@@ -16,8 +16,10 @@ launch phase,
 a trigonometric polynomial in tau, whose roots are eigenvalues.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import combinations
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -35,7 +37,6 @@ from singimpact.branches.resting import free_orbits
 from singimpact.flights.family import LinearFamily, SteppedFamily, family
 from singimpact.flights.flight_path import ends
 from singimpact.flights.impact_map import impact_map
-from singimpact.flights.model_numbers import linear_waves
 from singimpact.flights.rebound_law import rebound_slope
 from singimpact.flights.response import variations
 from singimpact.oscillator.linear import TAU, T, linear_flight, linear_form
@@ -140,65 +141,86 @@ def phases_and_speeds(osc: Oscillator, k: int) -> tuple[Array, Array] | None:
     >>> [round(float(each), 12) for each in v]
     [-0.533333333333, 0.533333333333]
     """
-    flights = family(osc)
+    flights, period, r = family(osc), np.array([as_float(osc.period)]), np.array([as_float(osc.restitution)])
     assert isinstance(flights, LinearFamily)
-    period, r = as_float(osc.period), as_float(osc.restitution)
-    flow = flights.flow({}, k * period)[:2]
-    factor, share = (1.0, 1 / r) if r else (0.0, 1.0)  # the second equation times r: v = 0 for r = 0
-    by_v = np.array([flow[0, 1], factor * flow[1, 1] + share])
-    waves = linear_waves(osc)
-    degrees = [round(abs(as_float(wave.rate)) * period / (2 * np.pi)) for wave in waves]
+    (tau,), (v,), (continuum,) = one_impact(flights, {}, (period, r), k)
+    roots = np.isfinite(tau)
+    return None if continuum else (tau[roots], v[roots])
+
+
+def one_impact(
+    flights: LinearFamily, values: Mapping[str, Array], laws: tuple[Array, Array], k: int
+) -> tuple[Array, Array, Array]:
+    """Phases and velocities of all solutions of each member, nan where there are fewer; whether there is a continuum.
+
+    Parameters
+    ----------
+    values : name -> numbers of the members, shape (m,). laws : their periods and restitutions, shape (m,).
+    """
+    (period, r), p = laws, flights.constants(values)
+    flow = flights.flow(values, k * period)[:, :2]
+    rebounds = r > 0  # else the second equation times r: v = 0
+    by_v = np.stack([flow[:, 0, 1], np.where(rebounds, flow[:, 1, 1] + 1 / np.where(rebounds, r, 1.0), 1.0)], axis=1)
+    waves = [(np.broadcast_to(p[i], period.shape), p[i + 1]) for i in range(3, len(p), 4)]
+    degrees = [round(abs(rate[0]) * period[0] / (2 * np.pi)) for rate, _ in waves]
     size = max(degrees, default=0)
     # the coefficients of e^{i m omega tau}, m = -size ... size, of L_1 and L_2
-    series = np.zeros((2, 2 * size + 1), dtype=complex)
-    series[:, size] = flow[:, 2]
-    for j, (wave, degree) in enumerate(zip(waves, degrees, strict=True)):
-        sign = 1 if as_float(wave.rate) > 0 else -1
-        turned = (flow[:, 3 + 2 * j] - 1j * flow[:, 4 + 2 * j]) / 2 * np.exp(1j * as_float(wave.phase))
-        series[:, size + sign * degree] += turned
-        series[:, size - sign * degree] += np.conj(turned)
-    series[1] *= factor
-    total = series[1] * by_v[0] - series[0] * by_v[1]
-    scale = np.abs(series).max() * np.abs(by_v).max()
-    if np.abs(total).max() <= 1e-13 * scale:
-        return None
+    series = np.zeros((period.size, 2, 2 * size + 1), dtype=complex)
+    series[..., size] = flow[..., 2]
+    for j, ((rate, phase), degree) in enumerate(zip(waves, degrees, strict=True)):
+        turned = (flow[..., 3 + 2 * j] - 1j * flow[..., 4 + 2 * j]) / 2
+        turned *= np.broadcast_to(np.exp(1j * np.asarray(phase)), period.shape)[:, None]
+        turned = np.where(rate[:, None] > 0, turned, np.conj(turned))
+        series[..., size + degree] += turned
+        series[..., size - degree] += np.conj(turned)
+    series[:, 1] *= rebounds[:, None]
+    total = series[:, 1] * by_v[:, :1] - series[:, 0] * by_v[:, 1:]
+    scale = np.abs(series).max(axis=(1, 2)) * np.abs(by_v).max(axis=1)
+    continuum = np.abs(total).max(axis=1) <= 1e-13 * scale
+    total[continuum] = np.nan
     angles = _refined(_near(total), total, size)
-    tau = np.mod(angles, 2 * np.pi) * period / (2 * np.pi)
-    parts = (np.exp(1j * np.outer(angles, np.arange(-size, size + 1))) @ series.T).real
-    row = int(np.argmax(np.abs(by_v))) if r else 1
-    return tau, -parts[:, row] / by_v[row] + 0.0
+    turns = np.exp(1j * angles[..., None] * np.arange(-size, size + 1))
+    parts = (turns @ series.transpose(0, 2, 1)).real
+    row = np.where(rebounds, np.argmax(np.abs(by_v), axis=1), 1)
+    every = np.arange(period.size)
+    v = -parts[every, :, row] / by_v[every, row, None] + 0.0
+    return np.mod(angles, 2 * np.pi) * period[:, None] / (2 * np.pi), v, continuum
 
 
 def _near(total: Array) -> Array:
-    """Real roots of a real trigonometric polynomial and near them, from its coefficients of e^{i m angle}."""
-    if len(total) == 3:  # a + b cos(angle + shift)
-        share = -total[1].real / (2 * abs(total[2])) if total[2] else np.inf
-        if abs(share) > 1 + 1e-9:
-            return np.zeros(0)
-        turn = np.arccos(np.clip(share, -1, 1))
-        return np.asarray(np.array([turn, -turn]) - np.angle(total[2]))
-    roots = np.roots(np.trim_zeros(np.where(np.abs(total) < 1e-15 * np.abs(total).max(), 0, total))[::-1])
-    return np.asarray(np.angle(roots[np.abs(np.abs(roots) - 1) < 1e-6]))
+    """Real roots of real trigonometric polynomials and near them, from coefficients of e^{i m angle}; nan of fewer."""
+    if total.shape[1] == 3:  # a + b cos(angle + shift)
+        with np.errstate(all="ignore"):
+            share = -total[:, 1].real / (2 * np.abs(total[:, 2]))
+        turn = np.arccos(np.where(np.abs(share) > 1 + 1e-9, np.nan, np.clip(share, -1, 1)))
+        return np.asarray(np.stack([turn, -turn], axis=1) - np.angle(total[:, 2:]))
+    angles = np.full((len(total), total.shape[1] - 1), np.nan)
+    for row in np.flatnonzero(np.isfinite(total).all(axis=1)).tolist():
+        one = total[row]
+        roots = np.roots(np.trim_zeros(np.where(np.abs(one) < 1e-15 * np.abs(one).max(), 0, one))[::-1])
+        near = np.angle(roots[np.abs(np.abs(roots) - 1) < 1e-6])
+        angles[row, : near.size] = near
+    return angles
 
 
 def _refined(angles: Array, total: Array, size: int) -> Array:
-    """Real roots of a real trigonometric polynomial near these angles, each once; the others were none."""
+    """Real roots of real trigonometric polynomials near these angles, each once; nan where there was none."""
     orders = 1j * np.arange(-size, size + 1)
-    at = angles.copy()
+    at, columns = angles.copy(), np.stack([total, orders * total], axis=-1)
     with np.errstate(all="ignore"):
         for _ in range(50):
-            waves = np.exp(np.outer(at, orders))
-            step = (waves @ total).real / (waves @ (orders * total)).real
+            values = (np.exp(at[..., None] * orders) @ columns).real
+            step = values[..., 0] / values[..., 1]
             at = at - np.clip(step, -0.1, 0.1)
             if not (np.abs(step) > 1e-15).any():
                 break
-    waves = np.exp(np.outer(at, orders))
-    good = np.abs((waves @ total).real) <= 1e-13 * np.abs(total).sum()
-    roots: list[float] = []
-    for angle in np.sort(np.mod(at[good], 2 * np.pi)).tolist():
-        if all(min(abs(angle - other), 2 * np.pi - abs(angle - other)) > 1e-9 for other in roots):
-            roots.append(angle)
-    return np.array(roots)
+        left = np.abs((np.exp(at[..., None] * orders) @ columns)[..., 0].real)
+        good = left <= 1e-13 * np.abs(total).sum(axis=1)[:, None]
+        roots = np.sort(np.where(good, np.mod(at, 2 * np.pi), np.nan), axis=1)
+        for i, j in combinations(range(roots.shape[1]), 2):
+            gap = np.abs(roots[:, j] - roots[:, i])
+            roots[np.minimum(gap, 2 * np.pi - gap) <= 1e-9, j] = np.nan
+    return roots
 
 
 # Newton's method on the closing conditions from many starts: a grid of states, and grazes of simpler orbits.

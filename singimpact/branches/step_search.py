@@ -7,6 +7,7 @@ change of sign of a function or none.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from itertools import pairwise
 from math import copysign, sqrt
 from typing import Any, NamedTuple
@@ -278,24 +279,13 @@ class StepSearch:
 
     def located(self, crossing: Crossing) -> tuple[float, Point] | None:
         """The distance and the point at which the test vanishes; None where it, or the curve, has no value."""
-        points = {node.along: node.point for node in (crossing.low, crossing.high)}
-        ends = crossing.ends
-
-        def value(along: float) -> float:
-            if along not in points:
-                step = self.curve.beyond(self.here, along)
-                if step is None:
-                    raise ArithmeticError
-                points[along] = step[0]
-            return self._value(crossing, along, points[along])
-
-        low, high = crossing.low.along, crossing.high.along
-        try:
-            along = root_between(value, low, high, (ends[0].value, ends[1].value))
-            value(along)
-        except ArithmeticError:
-            return None
-        return along, points[along]
+        low, high = crossing.low, crossing.high
+        values = crossing.ends[0].value, crossing.ends[1].value
+        return self.curve.zero(
+            {0.0: self.here, low.along: low.point, high.along: high.point},
+            partial(self._value, crossing),
+            lambda value: root_between(value, low.along, high.along, values),
+        )
 
     def _value(self, crossing: Crossing, along: float, point: Point) -> float:
         """One test function at a point of the step."""

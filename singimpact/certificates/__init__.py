@@ -13,11 +13,9 @@ _FILES = {
     "checker.formulas": "Formula require_period",
     "checker.gravity": "Gravity",
     "checker.horseshoe": "Set derivative",
-    "checker.impacts": "impact",
-    "checker.motion": "Flight Model defect taylor",
+    "checker.motion": "Flight Model defect read taylor",
     "checker.nonlinear": "Flights Growing",
-    "checker.periodic_orbit": "Orbits",
-    "checker.told": "read",
+    "checker.periodic_orbit": "Orbits impact",
     "claims_proofs": "check_certificate",
     "claims_checker": "Refused STATED STRONGEST_FIRST check_words statement_of",
 }

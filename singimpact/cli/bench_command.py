@@ -136,7 +136,7 @@ def command(
 ) -> None:
     """Measure CPU times and compare them with other tools.
 
-    The groups are public, chatter, series, regions, ensemble, limit.
+    The groups are public, chatter, series, regions, ensemble, fit, limit.
 
     The default is all but public, which has twelve calls beside loops of numba (with --quick without limit).
 

@@ -105,7 +105,7 @@ def basins_over(
     ----------
     model, impacts, wall : as of `basins`. over : a number, as of `bifurcation`. between : its ends. values : of it.
     window : ends of both axes, each may be None. sampling : `states` at each value (400), drawn evenly from the window
-        with the numpy `seed` (0), at the same places of the window at all values; `jump` (0.1), the distance of states
+        with the numpy `seed` (0), at the same places of the window at all values; `jump` (0.25), the distance of states
         of two neighbouring values, in periods and highest velocities, from which on they are two attractors; `executor`
         and `output` of `sweep`: a case is a value.
 

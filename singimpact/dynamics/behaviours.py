@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -27,8 +28,8 @@ from singimpact.flights.horizons import horizon_of
 from singimpact.flights.orbits import signed_iterate
 
 # Distance of the states of an attractor at neighbouring values of a number, in periods and highest velocities, from
-# which on they are two attractors; of 20 values over 0.1 of a clearance (1, 1) orbits move by 0.02
-JUMP = 0.1
+# which on they are two attractors; the (1, 1) orbit of x'' + x = cos 2t moves by 0.15 from c = 0.25 to 0.3
+JUMP = 0.25
 KINDS = {
     OTHER: "not decided",
     CHAOS: "chaotic",
@@ -148,25 +149,24 @@ def matched(
     >>> matched([[run] for run in runs], [1.0] * 3, 2.0)[1]
     [[0], [0], [1]]
     """
-    last, labels = list[tuple[LongRun, float]](), list[list[int]]()
+    last, labels, alike = list[tuple[LongRun, float]](), list[list[int]](), dict[tuple[Any, ...], list[int]]()
     for runs, unit in zip(groups, units, strict=True):
-        gaps = sorted((_gap((run, unit), old, fast), i, k) for i, run in enumerate(runs) for k, old in enumerate(last))
-        own = dict[int, int]()
-        for gap, i, label in gaps:
+        own, kin = dict[int, int](), [alike.setdefault((run.kind, run.n, run.k, run.word), []) for run in runs]
+        gaps = [(_gap((run, unit), last[k], fast), i, k) for i, run in enumerate(runs) for k in kin[i]]
+        for gap, i, label in sorted(gaps):
             if gap < jump and i not in own and label not in own.values():
                 own[i] = label
         for i, run in enumerate(runs):
             label = own.setdefault(i, len(last))
+            kin[i] += [label] if label == len(last) else []
             last[label : label + 1] = [(run, unit)]
         labels.append([own[i] for i in range(len(runs))])
     return [run for run, _ in last], labels
 
 
 def _gap(one: tuple[LongRun, float], other: tuple[LongRun, float], fast: float) -> float:
-    """The largest distance of a state of an attractor from the nearest one of another; inf of two classes."""
+    """The largest distance of a state of an attractor from the nearest one of another of its class."""
     (run, unit), (old, before) = one, other
-    if (run.kind, run.n, run.k, run.word) != (old.kind, old.n, old.k, old.word):
-        return np.inf
     turns, speeds = np.subtract.outer(run.tau / unit, old.tau / before), np.subtract.outer(run.v, old.v) / fast
     away = np.maximum(np.abs(turns - np.rint(turns)), np.abs(speeds))
     places = np.nan_to_num(abs(run.x - old.x) / max(abs(run.x), abs(old.x), 1e-300))

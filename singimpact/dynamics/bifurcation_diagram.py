@@ -29,7 +29,7 @@ from singimpact.dynamics.attractors import (
     nearby_orbits,
     neutral,
 )
-from singimpact.dynamics.behaviours import LongRun, behaviour
+from singimpact.dynamics.behaviours import LongRun, behaviour, matched
 from singimpact.dynamics.free_motion import free_fates
 from singimpact.dynamics.long_run import chaotic
 from singimpact.dynamics.orbit import Orbit, dropped_orbit, orbit
@@ -69,7 +69,9 @@ class Bifurcation(Result):
     periods : of the forcing at each of the values, nan without one. settled : bool of each value: the events are those
         of an attracting orbit or repeat, or no impact comes before the horizon; False where a flight is unresolved.
     settle : impacts after which an orbit that has not settled was left.
-    attractors : of each value, with the names that basins have.
+    attractors : of each value, with the names that basins have. labels : their numbers, shape (values,), equal where
+        attractors of values next to one another are of one class and their states are near, see `si.basins`.
+    rotation : of each value, periods of the forcing an impact, k/n of an (n, k) orbit; nan of others.
     """
 
     array_axes: ClassVar[Mapping[str, tuple[str, ...]]] = {
@@ -77,6 +79,8 @@ class Bifurcation(Result):
         "periods": ("value",),
         "settled": ("value",),
         "class": ("value",),
+        "labels": ("value",),
+        "rotation": ("value",),
         "events": ("value", "event", "phase_v_ended"),
     }
     over: str
@@ -87,6 +91,19 @@ class Bifurcation(Result):
     settled: Array = field(default_factory=lambda: np.ones(1, dtype=bool), repr=False)
     settle: int = 0
     attractors: tuple[LongRun, ...] = field(default=(), repr=False)
+
+    @property
+    def labels(self) -> Array:
+        """Numbers of the attractors, which are followed from value to value."""
+        units = np.broadcast_to(np.nan_to_num(self.periods, nan=np.inf), self.values.shape).tolist()
+        fast = float(np.nanmax(np.abs(self.events[..., 1]), initial=1e-300))
+        return np.ravel(matched([[run] for run in self.attractors], units, fast)[1])
+
+    @property
+    def rotation(self) -> Array:
+        """Rotation numbers k/n of (n, k) orbits; nan of other attractors."""
+        counts = np.array([(run.k, run.n) if run.kind == "orbit" else (0, 0) for run in self.attractors], dtype=float)
+        return np.asarray(np.divide(*np.where(counts > 0, counts, np.nan).T))
 
     def __repr__(self) -> str:
         count, kept = self.events.shape[:2]
@@ -100,17 +117,18 @@ class Bifurcation(Result):
         """The number that moves, its values, and for each value phase, v, 1 for an end of chatter, of every event."""
         return (
             {"over": self.over, "direction": self.direction, "settle": self.settle}
-            | {name: getattr(self, name) for name in ("values", "events", "periods", "settled")}
+            | {name: getattr(self, name) for name in ("values", "events", "periods", "settled", "labels", "rotation")}
             | {"class": np.array([each.name for each in self.attractors], dtype=object)}
         )
 
     def table(self) -> dict[str, Array]:
-        """One row for each event: value, phase, v, and 1 for an end of chatter."""
+        """One row for each event: value, phase, v, 1 for an end of chatter, and the label of its attractor."""
         phase, v, ended = self.events.reshape(-1, 3).T
         there = np.isfinite(phase)
         values = np.repeat(self.values, self.events.shape[1])[there]
         ends = ended[there].astype(int)
-        return {self.over: values, "phase": phase[there], "v": v[there], "chatter_ended": ends}
+        labels = np.repeat(self.labels, self.events.shape[1])[there]
+        return {self.over: values, "phase": phase[there], "v": v[there], "chatter_ended": ends, "attractor": labels}
 
 
 @checked_keywords
@@ -154,11 +172,11 @@ def bifurcation(
 
     Examples
     --------
-    >>> found = bifurcation(Oscillator("x", "cos(2*t)", 0, "1/2"), "clearance", ("0.2", "0.3"), 2, kept=4)
+    >>> found = bifurcation(Oscillator("x", "cos(2*t)", 0, "1/2"), "clearance", ("0.2", "0.22"), 2, kept=4)
     >>> found
-    Bifurcation(over clearance: 2 values from 0.2 to 0.3, 4 events of each)
-    >>> found.events[0, :, 1].round(6).tolist()
-    [1.066667, 1.066667, 1.066667, 1.066667]
+    Bifurcation(over clearance: 2 values from 0.2 to 0.22, 4 events of each)
+    >>> found.events[0, :, 1].round(6).tolist(), found.labels.tolist(), found.rotation.tolist()
+    ([1.066667, 1.066667, 1.066667, 1.066667], [0, 0], [1.0, 1.0])
     """
     accepted = ["executor", "output", "settle", "start", "impacts", "kept", "direction"]
     require_known("argument of bifurcation", sweeping, accepted)

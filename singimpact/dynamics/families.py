@@ -15,6 +15,7 @@ from singimpact.flights.orbits import SLOW, Ends, iterate
 from singimpact.flights.results import JUDGED, Step
 from singimpact.flights.states import States
 from singimpact.flights.walls import at_walls, wall_codes
+from singimpact.handed_on import Study
 from singimpact.inputs import InputError, checked_methods, refuse, require_memory, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION, UPPER, with_number
@@ -89,11 +90,17 @@ class OscillatorFamily:
         return OscillatorFamily(self.osc, some)
 
     def __iter__(self) -> Iterator[Oscillator]:
-        return (self[index] for index in np.ndindex(self.shape))
+        return map(self.member, range(self.size))
+
+    def member(self, index: int) -> Oscillator:
+        """One of the models, counted along all axes."""
+        return self.osc.replace(**{name: float(values[index]) for name, values in self.flat.items()})
 
     def __repr__(self) -> str:
         f, g = self.osc.f, self.osc.g
         return f"OscillatorFamily({self.size} models of x'' + {f} = {g}: {', '.join(self.numbers)})"
+
+    periodic = Study()  # a function of `singimpact`, documented there
 
     # ---- flights
 

@@ -330,17 +330,18 @@ class _Run:
 
     def settle(self, spread: bool) -> None:
         """The least squares; with the noise that the residuals of a first try have, if it is not given."""
-        self._fitted()
+        # states at which the first hits are told are an orbit already
+        self._fitted(SETTINGS.least if self.first else SETTINGS.loose)
         if spread:
             self.record.sizes = self.spread()
-            self._fitted()
+            self._fitted(SETTINGS.least)
 
-    def _fitted(self) -> None:
-        """Newton's method of the least squares, whose conditions are loose at first."""
+    def _fitted(self, loose: float) -> None:
+        """Newton's method of the least squares, whose conditions are so loose at first."""
         from scipy.sparse import block_array, csc_array, diags_array
         from scipy.sparse.linalg import splu
 
-        loose, count = SETTINGS.loose, self.numbers.size
+        count = self.numbers.size
         for _ in range(SETTINGS.steps):
             missed, slopes = self._conditions()
             _, off, orbit = self.record.rows(self)

@@ -200,7 +200,7 @@ class Growth:
         """Take in a stretch; sums begin anew where an orbit has rested."""
         at, real = stretch.chosen, stretch.real
         if real.any():
-            slopes, areas = self._derivatives(stretch)
+            slopes, areas = self.derivatives(stretch)
             count = real.shape[1]
             pieces = max(1, min(SETTINGS.stretches, count // SETTINGS.least))
             length = -(-count // pieces)
@@ -259,7 +259,7 @@ class Growth:
             result[at] = -slope if wall else slope
         return result
 
-    def _derivatives(self, stretch: Stretch) -> tuple[Array, Array]:
+    def derivatives(self, stretch: Stretch) -> tuple[Array, Array]:
         """D G of the impacts of a stretch, shape (2, 2, n), and ln |det D G|."""
         lives, members, real = self.lives, self.lives.members, stretch.real
         phase, _, v, walls = stretch.begun

@@ -17,8 +17,8 @@ from singimpact.flights.impact_map import impact_map
 from singimpact.flights.orbits import signed_iterate
 from singimpact.status import Status
 
-# Turns of the fastest motion in which the responses that are left are compared: an exponent of -0.01 an impact makes 1e-8
-# of a distance
+# Turns of the fastest motion in which the responses that are left are compared: an exponent of -0.01 an impact makes
+# 1e-8 of a distance
 CONFIRMED = 2048
 # Relative distances of responses that are one, and of those that are several
 SAME, DIFFERENT = 1e-6, 1e-3

@@ -233,9 +233,18 @@ class LinearFamily(Family):
         bend = matrix[1] @ (grown[:n, :n] @ start)
         return End(state, np.array([state[1], bend]), flow @ turned, flow[:, 1].copy(), by_numbers)
 
-    def flow(self, values: Values, time: float) -> Array:
-        """e^{M T}: its first two rows give x - c and x' from v, 1 and the cosines and sines at the launch."""
-        return exponential(self._matrix([each.value for each in self.numbers(values)]) * time)
+    def constants(self, values: Mapping[str, Array]) -> list[Any]:
+        """The values of `numbers`, or of arrays of numbers."""
+        return [evaluate(tree, values, DOUBLES) for tree, _ in self._trees]
+
+    def flow(self, values: Mapping[str, Array], time: Array) -> Array:
+        """e^{M T}: its first two rows give x - c and x' from v, 1 and the cosines and sines at the launch.
+
+        Parameters
+        ----------
+        values : arrays of numbers, shape (m,). time : of each, shape (m,).
+        """
+        return exponential(self._matrix(self.constants(values), shape=time.shape) * time[:, None, None])
 
     def path(self, values: Values, tau: float, v: float, time: float) -> Array:
         p, count = self.numbers(values), self.samples(values, time)
@@ -250,16 +259,17 @@ class LinearFamily(Family):
         angles = [p[3 + 4 * j].value * tau + p[4 + 4 * j].value for j in range(self.waves)]
         return np.array([0.0, v, 1.0, *(part for angle in angles for part in (cos(angle), sin(angle)))])
 
-    def _matrix(self, p: list[float], flow: bool = True) -> Array:
+    def _matrix(self, p: list[Any], flow: bool = True, shape: tuple[int, ...] = ()) -> Array:
         """M of these numbers; linear in them but for the 1 of x - c, which a derivative has not."""
-        matrix = np.zeros((3 + 2 * self.waves,) * 2)
+        size = 3 + 2 * self.waves
+        matrix = np.zeros((size, size, *shape))
         matrix[0, 1] = 1.0 if flow else 0.0
-        matrix[1, :3] = -p[1], -p[0], p[2]
+        matrix[1, 0], matrix[1, 1], matrix[1, 2] = -p[1], -p[0], p[2]
         for j in range(self.waves):
             at, (rate, _phase, cosine, sine) = 3 + 2 * j, p[3 + 4 * j : 7 + 4 * j]
-            matrix[1, at : at + 2] = cosine, sine
+            matrix[1, at], matrix[1, at + 1] = cosine, sine
             matrix[at, at + 1], matrix[at + 1, at] = -rate, rate
-        return matrix
+        return np.moveaxis(matrix, (0, 1), (-2, -1))
 
 
 class SteppedFamily(Family):
@@ -329,22 +339,21 @@ _TAYLOR = np.array([1 / factorial(k) for k in range(_ORDER + 1)]).reshape(5, 4)
 
 
 def exponential(matrix: Array) -> Array:
-    """e^M of a small matrix by its Taylor series, scaled and squared; scipy's, through LAPACK, is ten times slower.
+    """e^M of a small matrix, or a stack of them, by its Taylor series, scaled and squared; scipy's is ten times slower.
 
     Examples
     --------
     >>> exponential(np.array([[0.0, 1.0], [0.0, 0.0]])).tolist()
     [[1.0, 1.0], [0.0, 1.0]]
     """
-    n = len(matrix)
-    size = float(np.abs(matrix).sum(axis=0).max())
+    size = float(np.abs(matrix).sum(axis=-2).max())
     halvings = max(frexp(size)[1], 0) if size < inf else 0
     A = matrix * 2.0**-halvings
-    powers = np.empty((4, n, n))
-    powers[0], powers[1] = np.eye(n), A
+    powers = np.empty((4, *matrix.shape))
+    powers[0], powers[1] = np.eye(matrix.shape[-1]), A
     np.matmul(A, A, out=powers[2])
     np.matmul(powers[2], A, out=powers[3])
-    parts = (_TAYLOR @ powers.reshape(4, -1)).reshape(5, n, n)
+    parts = (_TAYLOR @ powers.reshape(4, -1)).reshape(5, *matrix.shape)
     fourth = powers[2] @ powers[2]
     total = parts[4]
     for polynomial in parts[3::-1]:

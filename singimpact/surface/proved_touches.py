@@ -26,6 +26,7 @@ from singimpact.algebra.isolated_zeros import (
     Box,
     IsolatedZeros,
     Place,
+    cut,
     isolated_zeros,
     overlap,
     zeros_of,
@@ -166,7 +167,7 @@ class _Search:
                 if max(shares) < SETTINGS.least:
                     undecided.append((smaller[0], self.times, smaller[1]))
                     continue
-                stack += _cut(smaller, shares.index(max(shares)))
+                stack += cut(smaller, shares.index(max(shares)), SETTINGS.cut)
         undecided += [(tau, self.times, value) for tau, value in stack]
         return IsolatedZeros(tuple(zeros_), tuple(undecided), count)
 
@@ -264,12 +265,6 @@ def _ends_in_balls(ball: Any) -> tuple[Fraction, Fraction]:
 
 def _mirrored(ends: tuple[Fraction, Fraction], sign: int) -> tuple[Fraction, Fraction]:
     return ends if sign > 0 else (-ends[1], -ends[0])
-
-
-def _cut(box: Box, k: int) -> list[Box]:
-    low, high = box[k]
-    at = low + (high - low) * SETTINGS.cut
-    return [(*box[:k], ends, *box[k + 1 :]) for ends in ((low, at), (at, high))]
 
 
 @dataclass(frozen=True)

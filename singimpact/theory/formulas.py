@@ -23,11 +23,10 @@ from singimpact.oscillator.rho_series import TASK
 from singimpact.theory.completion import by_velocity, symbolic_completion
 from singimpact.theory.constants import LetteredModel
 from singimpact.theory.contact_points import Place, ending_gamma, exact_contact, multiplier, place
-from singimpact.theory.digits import all_certified, all_digits, sympy_digits, with_digits
 from singimpact.theory.gamma_in_symbols import rho_names, symbolic_curve
 from singimpact.theory.gamma_series import InvariantCurve, invariant_curve
 from singimpact.theory.impact_sheet import generic_sheet, sheet
-from singimpact.theory.power_series import TRUST, PowerSeries
+from singimpact.theory.power_series import TRUST, PowerSeries, all_certified, all_digits, sympy_digits, with_digits
 
 
 @dataclass(frozen=True)

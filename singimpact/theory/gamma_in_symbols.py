@@ -17,7 +17,7 @@ from singimpact.algebra.precision import kept_property
 from singimpact.algebra.rings import sympy_rational
 from singimpact.contact.contact import Contact, derivative_name
 from singimpact.handed_on import flint, sympy
-from singimpact.theory.gamma_series import InvariantCurve, invariant_curve
+from singimpact.theory.gamma_series import InvariantCurve, P, Q, invariant_curve
 
 WHOLLY_FACTORED = 12  # degree of a numerator up to which it is written as a product of irreducible factors
 ROOTS = (Fraction(0), Fraction(1), Fraction(-1), Fraction(-2), Fraction(-1, 2))
@@ -145,9 +145,8 @@ def divisor(j: int, level: int) -> flint.fmpq_poly:
     launch = sum((time ** (k + 1) * -_over(j, k, (k + 1) * (k + 2)) for k in range(j + 1)), x * 0)
     launch_tangent = sum((time**k * -_over(j, k, k + 2) for k in range(j + 1)), x * 0)
     impact_tangent = sum((time**k * (_over(j, k, k + 2) * (k + 1)) for k in range(j + 1)), x * 0)
-    P = sum((x**i * (j + 1 - i) for i in range(j + 1)), x * 0)
-    Q = sum((x**i * (i + 1) for i in range(j + 1)), x * 0)
-    product = x ** (j + 1) * P * impact_tangent + Q * (launch * x**j * (j + 1) + launch_tangent * x ** (j + level + 1))
+    landing = launch * x**j * (j + 1) + launch_tangent * x ** (j + level + 1)
+    product: flint.fmpq_poly = x ** (j + 1) * P(j, x) * impact_tangent + Q(j, x) * landing
     for factor in (x, x - 1):
         while (product % factor).is_zero():
             product = product // factor

@@ -53,19 +53,19 @@ def restitution_of(j: int, lambda_: Any) -> Any:
     >>> restitution_of(1, Fraction(1, 2))
     Fraction(5, 16)
     """
-    return lambda_ ** (j + 1) * _P(j, lambda_) / _Q(j, lambda_)
+    return lambda_ ** (j + 1) * P(j, lambda_) / Q(j, lambda_)
 
 
 def multiplier_across(j: int, lambda_: Any) -> Any:
     """mu = (P_j/Q_j)^2/lambda."""
-    return (_P(j, lambda_) / _Q(j, lambda_)) ** 2 / lambda_
+    return (P(j, lambda_) / Q(j, lambda_)) ** 2 / lambda_
 
 
-def _P(j: int, lambda_: Any) -> Any:
+def P(j: int, lambda_: Any) -> Any:
     return sum((lambda_**i * (j + 1 - i) for i in range(1, j + 1)), lambda_ * 0 + (j + 1))
 
 
-def _Q(j: int, lambda_: Any) -> Any:
+def Q(j: int, lambda_: Any) -> Any:
     return sum((lambda_**i * (i + 1) for i in range(1, j + 1)), lambda_ * 0 + 1)
 
 

@@ -32,9 +32,8 @@ from singimpact.inputs import InputError, checked_keywords, refuse, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import sign_of_acceleration
 from singimpact.theory.contact_points import Place, place
-from singimpact.theory.digits import all_digits, with_digits
 from singimpact.theory.gamma_in_symbols import in_length, length_weight, rho_names
-from singimpact.theory.power_series import PowerSeries
+from singimpact.theory.power_series import PowerSeries, all_digits, with_digits
 
 PARTS = ("x", "xdot", "depth", "time")
 LENGTHS = {"x": 1, "xdot": 1, "depth": 1, "time": 0}  # the powers of the unit of length that the parts carry

@@ -43,6 +43,7 @@ PEERS = {
     "series": {"sympy, integrals and series", "sympy, implicit function"},
     "regions": {"numba", "scipy DOP853, terminal event"},
     "ensemble": set(),
+    "fit": {"scipy DOP853, terminal event"},
     "limit": {"reference"},  # a command of .ci/check measures it
 }
 CUT = ("order", "tolerance")  # settings at which an answer is not meant to have all digits
@@ -54,7 +55,7 @@ CUT = ("order", "tolerance")  # settings at which an answer is not meant to have
 def test_group_at_its_smallest_size(name):
     pytest.importorskip("heyoka")
     found = measured(name, SMALL)
-    ours = [row for row in found.rows if row.method.startswith(("singimpact", "kernel"))]
+    ours = [row for row in found.rows if row.method.startswith("singimpact")]
     assert {row.method for row in found.rows} - {row.method for row in ours} == PEERS[name]
     assert all(row.microseconds > 0 for row in found.rows)
     judged = [row for row in ours if row.wrong is not None and not row.setting.startswith(CUT)]
@@ -110,11 +111,7 @@ def test_peer_that_is_not_installed_is_named(monkeypatch, singimpact):
 @pytest.mark.parametrize(
     "task",
     [
-        pytest.param(series_rows._symbols(5), marks=pytest.mark.slow),
-        pytest.param(series_rows._model(5), marks=pytest.mark.slow),
-        series_rows._curve(5, "EXACT"),
-        series_rows._curve(5, "Balls(256)"),
-        series_rows._curve(5, "DOUBLES"),
+        *(series_rows._public(case, 5) for case in series_rows.TRUTH),
         series_rows._plain(series_rows.MODEL, 2),
         series_rows._implicit(3),
     ],

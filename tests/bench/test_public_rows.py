@@ -119,8 +119,8 @@ def test_series_named_for_the_package_call_public_names_only():
     for task in (task for task in tasks if task.order <= 8):
         public, private = _executed(f"made = {task.made}", task.before + series_rows.AT)
         assert (len(public), private) == (1, [])
-    kernel = series_rows._symbols(4)
-    _, private = _executed(f"made = {kernel.made}", kernel.before + series_rows.AT)
+    own = "from singimpact.contact.contact import Contact\nfrom singimpact.theory.impact_sheet import sheet"
+    _, private = _executed("made = sheet(Contact.generic(1, 4), 4)", own)
     assert private == ["/contact/contact.py:generic", "/theory/impact_sheet.py:sheet"]
 
 

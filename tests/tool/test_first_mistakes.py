@@ -17,7 +17,7 @@ OSC = si.linear(2, "0.3", "0.5")
         (lambda: si.ImpactOscillator("x", "cos(2*s)", 0, "0.5"), "'s'"),
         (lambda: si.ImpactOscillator(None, "cos(2*t)", 0, "0.5"), "f = None"),
         (lambda: OSC.orbit(0.1, 0.2, n=3), "orbit has no argument 'n': give impacts"),
-        (lambda: OSC.basins(grid=3), "basins has no argument 'grid': give size"),
+        (lambda: OSC.basins(grid=3), "argument of basins 'grid': the nearest known are size"),
         (lambda: si.ImpactOscillator("x", "0", 0, 1, params={}), "ImpactOscillator has no argument 'params'"),
         (lambda: si.ImpactOscillator("x"), "ImpactOscillator takes f, g, clearance, restitution"),
         (lambda: OSC.orbit(), "an orbit starts from tau and v, or off the wall from x=, xdot= and t="),

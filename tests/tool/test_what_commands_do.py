@@ -56,7 +56,7 @@ def test_a_bifurcation_diagram_is_written_and_drawn(diagram, tmp_path):
     table = rows(tmp_path / "diagram.csv")
     there = np.isfinite(diagram.events[..., 0])
     assert len(table) == there.sum() < there.size  # the mass does not reach a wall at 1.5
-    assert list(table[0]) == ["clearance", "phase", "v", "chatter_ended"]
+    assert list(table[0]) == ["clearance", "phase", "v", "chatter_ended", "attractor"]
     assert float(table[0]["v"]) == diagram.events[0, 0, 1]
     assert {float(row["clearance"]) for row in table} <= set(diagram.values.tolist())
     assert si.plot(diagram).get_xlabel() == "clearance $c$"

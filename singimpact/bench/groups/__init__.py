@@ -11,6 +11,7 @@ GROUPS: dict[str, Callable[[Effort], Iterator[Case]]] = {
     "series": series_rows.cases,
     "regions": many_rows.regions,
     "ensemble": many_rows.ensemble,
+    "fit": many_rows.fit,
     "limit": limit_rows.cases,
 }
 

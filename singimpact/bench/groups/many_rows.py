@@ -1,15 +1,17 @@
-"""`bench regions` and `bench ensemble`: many models and many orbits, beside a user's loops over scipy and numba.
+"""`bench regions`, `ensemble` and `fit`: many models, orbits and impacts, beside a user's loops over scipy and numba.
 
-Only time is measured, at two sizes or more, so that it shows how time grows: a picture of classes has no known truth,
-and the orbits of an ensemble are chaotic.
+At two sizes or more, so that it shows how time grows. A picture of classes has no known truth, and the orbits of an
+ensemble are chaotic: only their time is measured. A fit to impacts without noise has the numbers that they came from.
 """
 
 from collections.abc import Callable, Iterator
 from functools import partial
+from typing import Any
 
 import numpy as np
 
 import singimpact as si
+from singimpact.algebra.numbers import Array
 from singimpact.bench.drawn import Problem
 from singimpact.bench.groups.impact_map_rows import ACCURACY, SCIPY
 from singimpact.bench.measuring import NO_AIM, Aim, Case, Effort, Method, with_peers
@@ -80,6 +82,37 @@ def ensemble(effort: Effort) -> Iterator[Case]:
     ]
     item = timed("singimpact, orbit", "one after the other", len(few) * impacts, lambda: [call() for call in few])
     yield Case("bouncing ball, an impact", [*rows, item])
+
+
+def fit(effort: Effort) -> Iterator[Case]:
+    """Restitution and clearance from impacts without noise, an impact."""
+    true, names = MODELS["linear"].replace(clearance="0.1"), ("restitution", "clearance")
+    start = true.replace(clearance="0.15", restitution="0.7")
+    for count in (30, 60) if effort.quick else (60, 240, 960):
+        seen = true.orbit(0.3, 0.4, count)
+        call = partial(si.fit, start, {"tau": seen.tau, "v": seen.v}, names)
+        # times are known to their own roundings, which grow beside a flight
+        own = Method("singimpact, fit", "", lambda call=call: list(call().values.values()), problems=count)
+        user = partial(_scipy_fit, seen, [0.7, 0.15])
+        yield Case(
+            f"numbers from {count} impacts, an impact",
+            [own, Method(SCIPY, "curve_fit of single flights", user, problems=count)],
+            [0.8, 0.1],
+            [float(count)] * 2,
+        )
+
+
+def _scipy_fit(seen: Any, start: list[float]) -> list[float]:
+    """A user's own fit: each measured impact flown to the next one."""
+    from scipy.optimize import curve_fit
+
+    fly, states = runge_kutta.stepper("linear", ACCURACY[SCIPY]), np.stack([seen.tau, seen.v], axis=1)
+
+    def following(states: Array, r: float, c: float) -> Array:
+        flown = np.array([fly(Problem("linear", 2.8, c, r, *state)) for state in states.tolist()])
+        return np.asarray(flown * [1, -r] + states * [1, 0]).ravel()
+
+    return list(curve_fit(following, states[:-1], states[1:].ravel(), start)[0])
 
 
 def family_of(model: si.ImpactOscillator, members: int) -> Callable[[], object]:

@@ -16,20 +16,6 @@ from singimpact.bench.measuring import Case, Effort, Method, Timed
 FLIGHT_TIME = values()["v_c.flight_time[cubic, polynomial forcing](-0.2,0.01)"]
 ON_GAMMA = values()["gamma.v[cubic, polynomial forcing](-0.1)"]
 
-OURS = """
-import flint, numpy
-from fractions import Fraction
-from singimpact.algebra.balls import Balls, as_rational
-from singimpact.algebra.rings import DOUBLES, EXACT
-from singimpact.contact.contact import Contact
-from singimpact.oscillator.model import Oscillator
-from singimpact.theory.gamma_series import invariant_curve
-from singimpact.theory.impact_sheet import sheet
-
-FORCE, FORCING = "x + xdot/10 + 3*x**3/10", "3081/10000 + t + t**2/3"
-DUFFING = Oscillator(FORCE, FORCING, "0.3", "1/2")
-LETTERED = Oscillator("x + d*xdot + k*x**3", "cos(t)", "0.3", "1/2", {"d": "0.1", "k": "0.3"})
-"""
 PUBLIC = """
 import flint, numpy, sympy
 from singimpact import ImpactOscillator, theory
@@ -62,8 +48,6 @@ KNOWN = {"a_d1": 1, "a_d2": Fraction(2, 3), "f_01": Fraction(1, 10), "f_10": Fra
 value = sympy.sympify(made).subs({s: sympy.Rational(KNOWN.get(s.name, 0)) for s in sympy.sympify(made).free_symbols})
 answer = [str(value)]
 """
-OF_JET = "answer = [str(sum(c * SIGMA**i * T**k for (i, k), c in made.terms.items()))]"
-OF_GRAPH = "answer = [str(sum({} * Fraction(-1, 10)**n for n, c in made.graph.items()))]"
 OF_POWERS = (
     "answer = [str(sum(sympy.Rational(str(c)) * sympy.Rational(-1, 10)**n for n, c in made.coefficients.items()))]"
 )
@@ -84,7 +68,7 @@ class Task:
     method: str
     order: int
     made: str
-    before: str = OURS
+    before: str = PUBLIC
     judged: str = "answer = None"
 
     def cost(self) -> Cost:
@@ -101,16 +85,6 @@ SYMBOLS, MODEL, GAMMA = "v_c, symbols for the jets", "v_c, cubic model", "gamma,
 TRUTH = {SYMBOLS: ["0.01"], MODEL: ["0.01"], GAMMA: [ON_GAMMA]}
 
 
-def _symbols(order: int) -> Task:
-    made = f"sheet(Contact.generic(1, {order}), {order})"
-    return Task(SYMBOLS, "kernel", order, made, OURS, f"made = made.v.to_sympy()\n{JETS}")
-
-
-def _model(order: int) -> Task:
-    made = f"sheet(Contact.of(DUFFING, Fraction(0), 1, {order}, EXACT), {order}).v"
-    return Task(MODEL, "kernel", order, made, OURS, OF_JET)
-
-
 def _public(case: str, order: int) -> Task:
     """The function that a user calls, with the sympy object that it returns."""
     made, judged = {
@@ -118,17 +92,7 @@ def _public(case: str, order: int) -> Task:
         MODEL: (f"theory.v_c({order}, 'tangency', CUBIC, 0)", OF_SUM),
         GAMMA: (f"theory.gamma({order}, 'tangency', CUBIC, 0)", OF_POWERS),
     }[case]
-    return Task(case, "singimpact", order, made, PUBLIC, judged)
-
-
-def _curve(order: int, ring: str) -> Task:
-    name, start, rate, coefficient = {
-        "EXACT": ("kernel, exact", "Fraction(0)", "Fraction(3, 5)", "c"),
-        "Balls(256)": ("kernel, 256-bit balls", "Fraction(0)", "Fraction(3, 5)", "as_rational(c)"),
-        "DOUBLES": ("kernel, doubles", "0.0", "0.6", "Fraction(c)"),
-    }[ring]
-    made = f"invariant_curve(Contact.of(DUFFING, {start}, 1, {order}, {ring}), {rate}, {order})"
-    return Task(GAMMA, name, order, made, OURS, OF_GRAPH.format(coefficient))
+    return Task(case, "singimpact", order, made, judged=judged)
 
 
 def _implicit(order: int) -> Task:
@@ -147,16 +111,12 @@ def _plain(case: str, order: int) -> Task:
 
 # as the table shows them: by case, then by order, the method that the others are compared with first
 TASKS = (
-    *(task for n in (2, 3, 4) for task in (_symbols(n), _public(SYMBOLS, n), _plain(SYMBOLS, n), _implicit(n))),
-    *(task for n in (8, 12) for task in (_symbols(n), _public(SYMBOLS, n))),
-    *(task for n in (2, 3, 4, 5) for task in (_model(n), _public(MODEL, n), _plain(MODEL, n))),
-    *(task for n in (8, 16) for task in (_model(n), _public(MODEL, n))),
-    *(task for n in (3, 4, 5) for task in (_curve(n, "EXACT"), _public(GAMMA, n), _plain(GAMMA, n))),
-    *(
-        task
-        for n in (8, 16, 32)
-        for task in (_curve(n, "EXACT"), _public(GAMMA, n), _curve(n, "Balls(256)"), _curve(n, "DOUBLES"))
-    ),
+    *(task for n in (2, 3, 4) for task in (_public(SYMBOLS, n), _plain(SYMBOLS, n), _implicit(n))),
+    *(_public(SYMBOLS, n) for n in (8, 12)),
+    *(task for n in (2, 3, 4, 5) for task in (_public(MODEL, n), _plain(MODEL, n))),
+    *(_public(MODEL, n) for n in (8, 16)),
+    *(task for n in (3, 4, 5) for task in (_public(GAMMA, n), _plain(GAMMA, n))),
+    *(_public(GAMMA, n) for n in (8, 16, 32)),
 )
 QUICK = (2, 8)  # orders of a quick look
 

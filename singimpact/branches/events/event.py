@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from singimpact.branches.events.kind import EventKind
 from singimpact.branches.events.table import KINDS, kind_of
+from singimpact.branches.events.unit_multipliers import NormalForm, normal_form
 from singimpact.inputs import InputError, refuse
 from singimpact.result import Result
 
 if TYPE_CHECKING:
     from singimpact.branches.enclosed_event import EnclosedEvent
     from singimpact.branches.orbits import PeriodicOrbit
-
 
 NEAR = 1e-6  # how far, relative to 1 or the parameter, an event in doubles is from the one that is proved
 
@@ -62,6 +63,47 @@ class Event(Result):
     def described(self) -> EventKind:
         """The kind of the event, as an object."""
         return kind_of(self.kind)
+
+    @cached_property
+    def normal_form(self) -> NormalForm:
+        """The first coefficient of the normal form at a doubling or a torus, computed when it is first read.
+
+        Returns
+        -------
+        NormalForm : `.value`, c of w -> -w + c w^3 at a doubling, at a torus the real part of a of
+            z -> z e^(i theta) (1 + a |z|^2), where w and z are lengths in (tau, v) just after the first impact;
+            `.error`, an estimate. Both are nan where flights beside the orbit leave the domain of f or g, at other
+            events, of orbits without impact and of limit cycles.
+
+        Notes
+        -----
+        From derivatives of flights, which are exact up to rounding, and two differences of these of the eighth order.
+        A strong resonance (1:3, 1:4) has other normal forms.
+        Source: Kuznetsov, Elements of Applied Bifurcation Theory, 5.4; the same as `nf` of MatCont. Supported.
+
+        Examples
+        --------
+        >>> from singimpact.branches.branch import branch
+        >>> from singimpact.branches.periodic import periodic
+        >>> from singimpact.oscillator.model import Oscillator
+        >>> ball = Oscillator("1", "G*cos(t)", 0, "0.5", {"G": "1.4"})
+        >>> doubling = branch(periodic(ball, 1, 1)[1], "G", (1.2, 2)).events[-1]
+        >>> doubling, round(doubling.normal_form.value, 9)
+        (<period-doubling at G = 1.52682370052, supercritical>, 1.760184629)
+        """
+        return normal_form(self.orbit, self.described.gentle)
+
+    @property
+    def criticality(self) -> str:
+        """Whether the orbits that leave the branch are stable beside it ("supercritical") or not ("subcritical").
+
+        "degenerate" where the coefficient is not distinguished from 0; empty where there is none, see `normal_form`.
+        """
+        value, error = self.normal_form
+        if not np.isfinite(value):
+            return ""
+        gentle = "supercritical" if value * self.described.gentle > 0 else "subcritical"
+        return gentle if abs(value) > error else "degenerate"
 
     def others(self) -> list[PeriodicOrbit]:
         """Orbits of the other branches that meet this one here, to be followed by `branch`.
@@ -142,4 +184,5 @@ class Event(Result):
 
     def __repr__(self) -> str:
         which = f" of impact {self.impact + 1}" if self.described.at_impact and self.orbit.n else ""
-        return f"<{self.kind}{which} at {self.over} = {self.parameter:.12g}>"
+        word = f", {self.criticality}" if self.criticality else ""
+        return f"<{self.kind}{which} at {self.over} = {self.parameter:.12g}{word}>"

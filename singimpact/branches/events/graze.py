@@ -1,17 +1,21 @@
 """Grazes: an impact of the orbit has no velocity, or an orbit without impact touches the wall.
 
-`TouchingKind` and `heights` serve interior grazes too, at which a flight touches the wall between impacts.
+`TouchingKind` and `heights` serve interior grazes too, at which a flight touches the wall between impacts. Where the
+restitution is 0 no impact leaves a velocity: an orbit changes where an impact lies at a lift-off phase (`OnsetOfRest`).
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from singimpact.algebra.numbers import Array
 from singimpact.branches.events.kind import CurveLook, EventKind, Indexed, grazes
-from singimpact.branches.events.orbit_state import OrbitState, Test
+from singimpact.branches.events.orbit_state import OrbitState, Test, difference
+from singimpact.oscillator.wall_acceleration import acceleration
 
 if TYPE_CHECKING:
     from singimpact.branches.orbits import PeriodicOrbit
@@ -75,7 +79,6 @@ class Graze(TouchingKind):
     def remark(self, orbit: PeriodicOrbit, time: float, parameter: float) -> str:
         """Where a_c vanishes too, the graze is degenerate."""
         from singimpact.branches.solutions import orbit_period
-        from singimpact.oscillator.wall_acceleration import acceleration
 
         if not orbit.n or orbit.span is not None:  # without a clock a_c is one number
             return ""
@@ -114,7 +117,7 @@ class Graze(TouchingKind):
         slope[n + state.impact] = 1.0 / state.scales[n]
         return slope
 
-    def degenerate(self, state: OrbitState, gradient: Any) -> dict[str, float]:  # noqa: ARG002
+    def degenerate(self, state: OrbitState, gradient: Callable[[], Array]) -> dict[str, float]:  # noqa: ARG002
         """Folds and doublings that leave the curve, a_c = 0, and another impact that grazes."""
         from singimpact.branches.closing import Closing
 
@@ -157,3 +160,36 @@ class InteriorGraze(TouchingKind):
 
 
 INTERIOR_GRAZE = InteriorGraze()
+
+
+# ---- what a graze is where impacts leave no velocity
+
+
+class OnsetOfRest(EventKind):
+    """An impact that leaves no velocity where a_c = 0: where a_c < 0 the mass rests, and the orbit is another one."""
+
+    name = "onset of rest"
+    word = "onset of rest (an impact where a_c = 0, restitution 0)"
+    marker = "d"
+    look = CurveLook("black", "dash-dot", 1.4)
+
+    def tests(self, state: OrbitState) -> Indexed:
+        """a_c at each impact, where impacts leave no velocity."""
+        for i in range(state.closing.n if state.closing.plastic else 0):
+            yield i, 0, difference(partial(self.value, impact=i), state)
+
+    def value(self, state: OrbitState, impact: int) -> float:
+        """a_c at an impact."""
+        return float(state.closing.pushes(state.at)[impact])
+
+    def equation(self, state: OrbitState) -> float:
+        """a_c at the impact of the event."""
+        return self.value(state, state.impact)
+
+    def touching(self, closing: AnyClosing, orbit: PeriodicOrbit) -> int:  # noqa: ARG002
+        """The impact at which |a_c| is least."""
+        times: Array = np.asarray(orbit.tau, dtype=float)
+        return int(np.argmin(np.abs(acceleration(orbit.oscillator, times))))
+
+
+ONSET_OF_REST = OnsetOfRest()

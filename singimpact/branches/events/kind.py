@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 
 from singimpact.algebra.numbers import Array
-from singimpact.branches.events.orbit_state import NUDGE, OrbitState, Test
+from singimpact.branches.events.orbit_state import OrbitState, Test, difference
 
 if TYPE_CHECKING:
     from singimpact.branches.closing import Loop
     from singimpact.branches.orbits import PeriodicOrbit
     from singimpact.branches.solutions import AnyClosing
 
-NEAR = 1e-3  # distance of a multiplier of a limit cycle from that of its event
 Indexed = Iterator[tuple[int, int, Test]]  # impact or flight, which of its minima, and the test there
 
 
@@ -42,6 +41,7 @@ class EventKind(Protocol):
     is_class : whether an event that was classified may have this name.
     is_own : a user defines it: its test may jump, and is not stored.
     proof : what a proof of such an event shows, in a sentence; empty: no proof covers it.
+    gentle : the sign of the first coefficient of its normal form where it is supercritical; 0: it has none.
     """
 
     name: str
@@ -56,6 +56,7 @@ class EventKind(Protocol):
     is_class: bool = True
     is_own: bool = False
     proof: str = ""
+    gentle: int = 0
 
     @property
     def label(self) -> str:
@@ -108,7 +109,7 @@ class EventKind(Protocol):
         """The derivative of the equation by each unknown; None: by differences."""
         return None
 
-    def degenerate(self, state: OrbitState, gradient: Any) -> dict[str, float]:  # noqa: ARG002
+    def degenerate(self, state: OrbitState, gradient: Callable[[], Array]) -> dict[str, float]:  # noqa: ARG002
         """Test functions of points of codimension two, by their names; `gradient` computes that of the equation."""
         return grazes(state, "graze")
 
@@ -150,126 +151,8 @@ class ReturnMapKind(EventKind):
 
     def tests(self, state: OrbitState) -> Indexed:
         """The test and its rate; nan where a flight has left the domain of f or g."""
-        here = self.test(state) if state.is_finite else np.nan
-        later = self.test(state.beside) if state.beside.is_finite else np.nan
-        yield 0, 0, Test(here, (later - here) / NUDGE, size=self.size(state))
+        yield 0, 0, difference(self.test, state, self.size(state))
 
     def value(self, state: OrbitState, impact: int) -> float:  # noqa: ARG002
         """The test function."""
         return self.test(state)
-
-
-class MultiplierKind(ReturnMapKind):
-    """A kind at which a real multiplier passes 1 or -1: 1 - mu t + d vanishes, t the trace of M, d its determinant."""
-
-    multiplier = 1.0
-
-    def occurs(self, loop: Loop) -> bool:
-        """Whether the multiplier is there; det J(mu) of a limit cycle vanishes at its graze too."""
-        return loop.clocked or bool(abs(loop.multipliers()[0] - self.multiplier) < NEAR)
-
-    def equation(self, state: OrbitState) -> float:
-        """det J(mu) of `closing.Loop`, of scaled unknowns."""
-        return state.determinant(self.multiplier)
-
-    def of_return_map(self, total: Any) -> Any:
-        """1 - mu t + d."""
-        return 1 - int(self.multiplier) * trace(total) + total.det()
-
-    def rate_of_return_map(self, total: Any, change: Any) -> Any:
-        """Its rate."""
-        return -int(self.multiplier) * trace(change) + rate_of_determinant(total, change)
-
-
-def trace(matrix: Any) -> Any:
-    """The trace of a matrix of balls."""
-    return matrix[0, 0] + matrix[1, 1]
-
-
-def rate_of_determinant(total: Any, change: Any) -> Any:
-    """The rate of the determinant where the matrix changes at a rate."""
-    return (
-        change[0, 0] * total[1, 1]
-        + total[0, 0] * change[1, 1]
-        - change[0, 1] * total[1, 0]
-        - total[0, 1] * change[1, 0]
-    )
-
-
-# ---- two orbits meet; orbits of twice the period leave the branch; an invariant torus begins
-
-
-class Fold(MultiplierKind):
-    """Saddle-node bifurcation: a multiplier is 1.
-
-    Its test is the component of the tangent by the parameter; on a curve, and in a proof, 1 - t + d.
-    """
-
-    name = "fold"
-    word = "fold (saddle-node bifurcation)"
-    marker = "o"
-    look = CurveLook("blue", "solid", 2.8)
-    may_meet = True
-    multiplier = 1.0
-    proof = "the orbits form one curve, on which the parameter turns back once: a multiplier is 1"
-
-    def test(self, state: OrbitState) -> float:
-        """The last component of the tangent."""
-        return float(state.tangent[-1])
-
-    def degenerate(self, state: OrbitState, gradient: Any) -> dict[str, float]:
-        """A cusp, a doubling at the fold, an impact that grazes."""
-        size = 2 * state.closing.n
-        # at a fold the conditions have a null vector; at a cusp it is tangent to the curve of folds (Kuznetsov, ch. 8)
-        vector = np.linalg.svd(state.loop.slope[:, :size] * state.scales[:size])[2][-1]
-        slope = gradient()[:size] * state.scales[:size]
-        turned = vector if vector[int(np.argmax(np.abs(vector)))] > 0 else -vector
-        tests = {"cusp": float(slope @ turned), "fold and doubling": state.determinant(-1.0)}
-        return tests | super().degenerate(state, gradient)
-
-
-FOLD = Fold()
-
-
-class NeimarkSacker(ReturnMapKind):
-    """Neimark-Sacker bifurcation: the product of two complex multipliers is 1.
-
-    Its test is the determinant of the return map less 1, times the last coefficient of det J(mu); in a proof 1 - d,
-    where t^2 < 4 d.
-    """
-
-    name = "torus"
-    word = "Neimark-Sacker bifurcation (torus)"
-    marker = "D"
-    conserved = True
-    proof = (
-        "the orbits form one curve, on which the product of two complex multipliers passes 1 once, at a rate that is "
-        "not 0"
-    )
-
-    def test(self, state: OrbitState) -> float:
-        """The first coefficient of det J(mu) less the last."""
-        return state.characteristic.torus
-
-    def size(self, state: OrbitState) -> float:
-        """The sum of the sizes of both coefficients."""
-        return abs(state.characteristic.zero) + abs(state.characteristic.two)
-
-    def occurs(self, loop: Loop) -> bool:
-        """Where the multipliers are complex: real ones whose product is 1 are no bifurcation."""
-        return loop.characteristic().are_complex
-
-    def of_return_map(self, total: Any) -> Any:
-        """1 - d."""
-        return 1 - total.det()
-
-    def rate_of_return_map(self, total: Any, change: Any) -> Any:
-        """Its rate."""
-        return -rate_of_determinant(total, change)
-
-    def refusal(self, total: Any) -> str:
-        """Whether the multipliers are shown to be complex."""
-        return "" if trace(total) ** 2 < 4 * total.det() else "the multipliers are not shown to be complex"
-
-
-NEIMARK_SACKER = NeimarkSacker()

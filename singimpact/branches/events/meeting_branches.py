@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -54,7 +55,7 @@ class Pitchfork(EventKind):
         """det J(-1) of half the orbit, or of half a symmetric one."""
         return state.determinant(-1.0)
 
-    def degenerate(self, state: OrbitState, gradient: Any) -> dict[str, float]:
+    def degenerate(self, state: OrbitState, gradient: Callable[[], Array]) -> dict[str, float]:
         """A fold at the pitchfork, an impact that grazes."""
         return {"fold and pitchfork": state.determinant(1.0)} | super().degenerate(state, gradient)
 
@@ -70,17 +71,22 @@ class Transcritical(EventKind):
 BRANCH_POINT, PITCHFORK, TRANSCRITICAL = BranchPointKind(), Pitchfork(), Transcritical()
 
 
-def repeats(closing: AnyClosing, at: Array) -> int:
-    """The number of times that an orbit with impacts repeats one of fewer impacts and periods, about."""
+def repeats(closing: AnyClosing, at: Array, alike: float = ALIKE, fast: float | None = None) -> int:
+    """The number of times that an orbit with impacts repeats one of fewer impacts and periods, about.
+
+    Parameters
+    ----------
+    alike : parts of the orbit that differ by less, of a period and of `fast`, are equal. fast : of velocities.
+    """
     n, k = closing.n, closing.k
     if not n:
         return 1
-    period, scales, at_times = closing.period(at), closing.scales(at), closing.times(at)
+    period, times, speeds = closing.period(at), closing.times(at), at[n : 2 * n]
+    fast = float(closing.scales(at)[n]) if fast is None else fast
     for share in range(n, 1, -1):
         m = n // share
         if n % share == 0 and k % share == 0 and closing.word[m:] == closing.word[: n - m]:
-            times = (np.roll(at_times, -m) - at_times - k // share * period)[: n - m] / scales[0]
-            speeds = (np.roll(at[n : 2 * n], -m) - at[n : 2 * n]) / scales[n]
-            if max(float(np.abs(times).max()), float(np.abs(speeds).max())) < ALIKE:
+            late = np.abs(np.roll(times, -m) - times - k // share * period)[: n - m]
+            if max(float(late.max()) / period, float(np.abs(np.roll(speeds, -m) - speeds).max()) / fast) < alike:
                 return share
     return 1

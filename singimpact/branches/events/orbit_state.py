@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -102,5 +103,11 @@ class OrbitState:
     def determinant(self, multiplier: float) -> float:
         """det J(mu) of scaled unknowns, which vanishes where mu is a multiplier."""
         size = 2 * self.closing.n
-        square = (self.loop.slope[:, :size] + (multiplier - 1) * self.loop.wrap) * self.scales[:size]
+        square = self.loop.at_multiplier(multiplier) * self.scales[:size]
         return float(np.linalg.det(square / np.abs(self.scales[: self.closing.n].max())))
+
+
+def difference(value: Callable[[OrbitState], float], state: OrbitState, size: float = np.nan) -> Test:
+    """A test function and its rate along the branch; nan where a flight has left the domain of f or g."""
+    here, later = (value(at) if at.is_finite else np.nan for at in (state, state.beside))
+    return Test(here, (later - here) / NUDGE, size=size)

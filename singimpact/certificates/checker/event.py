@@ -19,10 +19,9 @@ from typing import Any
 from flint import arb
 
 from .formulas import Formula, Refused, Wrong, ball, need, require_period
-from .motion import Model, size, within
+from .motion import Model, compared, size, within
 from .periodic_orbit import Orbits, require_shortest, return_map, walls_of
 from .schema import CURVED, TOUCHING
-from .told import compared
 
 PART = 512  # of the radii: half of the interval of the held unknown
 ROUNDS = 12  # of Newton's method and of secants

@@ -9,16 +9,14 @@ from typing import Any
 
 from flint import ctx
 
-from .border_orbit import border_orbit
-from .chatter_limit import chatter_limit
+from .chatter_limit import border_orbit, chatter_limit
 from .event import event
 from .formulas import Clock, Refused, Wrong
 from .horseshoe import horseshoe
 from .invariant_arc import invariant_arc
-from .motion import Flight, Model, landed
+from .motion import Flight, Model, balls_of, compared, landed, launched
 from .periodic_orbit import periodic_orbit
 from .schema import read, require_form, require_statement
-from .told import balls_of, compared, launched
 
 LEAST = 80  # bits, for bounds that are given with a few digits
 SECONDS, ORDINARY = 9, 640  # of CPU for a certificate of at most so many bits; more bits have more, by their square

@@ -19,8 +19,8 @@ from typing import Any
 from flint import arb, arb_mat
 
 from .formulas import Formula, Refused, Wrong, ball, need, require_period
-from .impacts import impact
 from .motion import Model, next_state, within
+from .periodic_orbit import impact
 
 PIECES = (1, 4)  # along u and along s, into which a set is cut
 COARSE = 64  # bits of the flights of a set

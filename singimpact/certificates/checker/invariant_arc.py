@@ -26,12 +26,10 @@ from typing import Any
 
 from flint import arb, arb_poly
 
-from .after_contact import require_after
 from .formulas import Clock, Refused, Wrong, ball, need
-from .gravity import Gravity, contact
-from .motion import Model, size, within
+from .gravity import Gravity, contact, require_after
+from .motion import Model, compared, lies_within, size, within
 from .nonlinear import Flights
-from .told import compared, lies_within
 
 NOT_SHOWN = arb(-1)  # no bound above 0
 SHARE = 4  # a box of this part of S and l is halved no further than 2^-40

@@ -80,5 +80,11 @@ def test_two_folds_of_a_forcing_with_two_harmonics_meet_in_a_cusp() -> None:
 def test_bad_input(events) -> None:
     with pytest.raises(InputError, match="two different numbers"):
         si.event_curve(events["graze"], ("amplitude", "amplitude"))
-    with pytest.raises(InputError, match="a fold, doubling, graze"):
+    with pytest.raises(InputError, match="a fold, doubling, torus, graze"):
         si.event_curve("graze", ("amplitude", "omega"))
+
+
+def test_a_graze_is_not_a_resonance(events) -> None:
+    for event in events.values():
+        curve = si.event_curve(event, ("amplitude", "omega"), ((-0.3, -0.05), (0.9, 1.1)))
+        assert [(point.kind, point.label) for point in curve.special] == [("resonant graze", "")]

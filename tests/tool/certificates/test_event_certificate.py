@@ -7,7 +7,7 @@ from second_program import changed, copied, dropped, is_read_back, no_number_may
 
 import singimpact as si
 from singimpact.certificates import Orbits, check
-from singimpact.certificates.checker import event, impacts, motion
+from singimpact.certificates.checker import event, motion, periodic_orbit
 from singimpact.inputs import InputError
 
 pytestmark = pytest.mark.slow  # seconds together: .ci/check runs them
@@ -102,7 +102,7 @@ def test_a_touch_that_is_not_the_first_is_what_the_pieces_refuse(graze, monkeypa
     """With twice as many periods the orbit touches the wall half way; without the pieces that is accepted."""
     twice = {**copied(graze.content), "periods": "2"}
     refuses(twice)
-    for module in (motion, impacts):
+    for module in (motion, periodic_orbit):
         monkeypatch.setattr(module, "first_root", lambda *_: None)
     check(renewed(twice))
 

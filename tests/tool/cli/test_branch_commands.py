@@ -115,7 +115,7 @@ def test_an_event_of_a_curve_is_known():
         (["branch", *COCO, "--start", "here", "1"], "start"),
         (["branch", *COCO, "-o", "a.doc"], ".png, .pdf or .svg"),
         (["branch", *COCO, "--csv", "absent/a.csv"], "cannot be written"),
-        (["events", *COCO, "--event", "torus"], "'torus' is not one of"),
+        (["events", *COCO, "--event", "transcritical"], "'transcritical' is not one of"),
         (["events", *COCO, "--event", "hidden impact"], "no such event: those of the branch are"),
         (["events", *COCO, "--over", "clearance", "clearance"], "two different numbers"),
         (["events", *COCO, "--index", "40"], "no such event"),

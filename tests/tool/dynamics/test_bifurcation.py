@@ -111,3 +111,15 @@ def test_the_impacts_that_are_named_are_those_that_were_flown():
     found = si.bifurcation(si.linear("3.3", "0.03", "0.95"), "clearance", ("0.029", "0.031"), 3, settle=0, impacts=150)
     assert not found.settled.any()
     assert "3 without a period seen in at most 150 impacts" in repr(found)
+
+
+def test_events_have_the_label_of_their_attractor_and_orbits_a_rotation_number():
+    """Two orbits attract at c = 0.1: on the way up and on the way down the events are those of different ones."""
+    osc = si.linear("2.8", "0.1", "0.8", amplitude=-1)
+    found = si.bifurcation(osc, "clearance", ("0.1", "0.14"), 9, start=("0.3", "0.4"), kept=12, direction="both")
+    names = [run.name for run in found.attractors]
+    assert len({(label, name) for label, name in zip(found.labels, names, strict=True)}) == len(set(names))
+    assert np.allclose(found.rotation, [run.k / run.n for run in found.attractors])
+    assert found.table()["attractor"].tolist() == np.repeat(found.labels, 12).tolist()
+    rest = si.bifurcation(si.linear(2, 0, "0.5"), "clearance", ("0.7", "1.5"), 2, kept=4)
+    assert np.isnan(rest.rotation).all()
