@@ -190,8 +190,7 @@ class _Expander:
         if argument.bound is not None and argument.bound <= 0:
             raise NoExpansion("no term is known")
         parts = dict(argument.terms)
-        start = parts.pop(Fraction(0), ZERO)
-        coefficients = _taylor(function, start, self.count + 2)
+        coefficients = _taylor(function, parts.pop(Fraction(0), ZERO), self.count + 2)
         return self.composed(Puiseux(tuple(sorted(parts.items())), argument.bound), lambda k: coefficients[k])
 
 

@@ -9,7 +9,7 @@ import sys
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from math import ceil, isfinite
+from math import isfinite
 from typing import Any
 
 import mpmath
@@ -215,15 +215,18 @@ def measure(group: str, case: Case, effort: Effort) -> list[Row]:
     """A row a method."""
     # the first turn compiles; its answers are judged, its time is not counted unless it is the only one
     first = [_turn(method) for method in case.methods]
-    rounds = [_rounds(turn.fresh, effort) for turn in first]
-    begun = list(first)
+    of_processes = 0 if effort.fresh == 1 else min(effort.fresh, effort.rounds)
+    rounds = [of_processes if turn.fresh else effort.rounds for turn in first]
+    begun, calls = list(first), [1] * len(first)
     for at in (at for at, count in enumerate(rounds) if count):
         if not first[at].fresh:  # a process of its own is as cold the second time
             begun[at] = _turn(case.methods[at])
+            # the clock ticks in microseconds, and calls after other methods are cold: short ones are timed together
+            while begun[at].seconds * calls[at] < effort.least:
+                calls[at] *= 2
+                begun[at] = _turn(case.methods[at], calls[at])
         if begun[at].seconds >= effort.once:
             rounds[at] = 0
-    # the clock ticks in microseconds: what is shorter is called several times within a round
-    calls = [1 if turn.fresh else max(ceil(effort.least / max(turn.seconds, 1e-7)), 1) for turn in begun]
     spent = np.array([[turn.each for turn in begun]] * effort.rounds)
     for turn in range(effort.rounds):
         for at in (at for at, count in enumerate(rounds) if count):
@@ -234,13 +237,6 @@ def measure(group: str, case: Case, effort: Effort) -> list[Row]:
         _row(group, case, method, turn, (spent[:, at], spent[:, at] / spent[:, 0], max(rounds[at], 1)))
         for at, (method, turn) in enumerate(zip(case.methods, first, strict=True))
     ]
-
-
-def _rounds(fresh: bool, effort: Effort) -> int:
-    """The number of rounds after the first; 0 where the first one is the measurement."""
-    if not fresh:
-        return effort.rounds
-    return 0 if effort.fresh == 1 else min(effort.fresh, effort.rounds)
 
 
 def cpu_seconds() -> float:

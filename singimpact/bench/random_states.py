@@ -1,15 +1,19 @@
 """Random states of linear and cubic models, beside one wall, between two, or at rest on a plastic one.
 
+A case is a model and some states; it is drawn from its number and the seed alone, so cases run anywhere, in any order.
+Rows and listed states serve the steep families too (`bench.steep_states`).
 Truth: the closed forms and Taylor steps of `truth.first_hit` in balls of 60 digits, which share nothing with the
 package.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor
+from dataclasses import asdict, dataclass, replace
 from functools import partial
 from math import acos, inf, pi
+from pathlib import Path
 from typing import Any
 
 import flint
@@ -17,13 +21,77 @@ import numpy as np
 
 from singimpact.algebra.numbers import Array
 from singimpact.algebra.precision import balls_at
-from singimpact.bench.random_rows import COLUMNS, EACH, RandomStates
 from singimpact.bench.stress.flown import hit_trial
-from singimpact.bench.stress.judging import Trial
-from singimpact.bench.stress.launches import BITS, Launch
+from singimpact.bench.stress.judging import BITS, Launch, Trial
 from singimpact.bench.truth.first_hit import first_hit
 from singimpact.cases import sweep
 from singimpact.status import Status
+
+EACH = 25  # states of a case, whose model is made once
+SHOWN = 5  # states of each sort that are written out, each of another kind
+# `wrong`, `unresolved` (by the package) and `undecided` (by the truth) are 0 or 1, `crossed` is 1 where a flight
+# crossed a steep layer, `ratio` is the error in units of what is allowed
+COLUMNS = ("case", "launch", "crossed", "wrong", "unresolved", "undecided", "ratio")
+SORTS = ("wrong", "unresolved", "undecided")
+
+
+@dataclass(frozen=True)
+class Row:
+    """States of one kind: how many, how many of each sort, and the largest error of one that is not wrong."""
+
+    kind: str
+    states: int
+    crossed: int
+    wrong: int
+    unresolved: int
+    undecided: int
+    worst: float
+
+
+@dataclass(frozen=True)
+class RandomStates:
+    """States that were flown.
+
+    Parameters
+    ----------
+    columns : those of COLUMNS, and others of the family. kind_of : the kind of a case.
+    text_of : a state as it is typed, from its case and launch.
+    """
+
+    columns: dict[str, Array]
+    kind_of: Callable[[int], str]
+    text_of: Callable[[int, int], str]
+
+    @property
+    def kinds(self) -> Array:
+        """The kind of each state."""
+        return np.array([self.kind_of(int(number)) for number in self.columns["case"]])
+
+    def rows(self) -> list[Row]:
+        """A row a kind, in the order of the cases."""
+        kinds, table = self.kinds, []
+        for kind in dict.fromkeys(kinds.tolist()):
+            here = {name: self.columns[name][kinds == kind] for name in COLUMNS}
+            right = here["ratio"][(here["wrong"] == 0) & np.isfinite(here["ratio"])]
+            counts = {name: int(here[name].sum()) for name in ("crossed", *SORTS)}
+            table.append(Row(kind, len(here["case"]), worst=float(right.max(initial=0.0)), **counts))
+        return table
+
+    def listed(self) -> dict[str, list[str]]:
+        """States of each sort as they are typed: a few, each of another kind, and all that the truth leaves open."""
+        kinds, texts = self.kinds, {}
+        for sort in SORTS:
+            states = self.columns[sort].nonzero()[0]
+            # what the truth does not decide is rare, and each such state is a fault of the truth
+            if sort != "undecided":
+                states = states[np.unique(kinds[states], return_index=True)[1]][:SHOWN]
+            pairs = zip(self.columns["case"][states], self.columns["launch"][states], strict=True)
+            texts[sort] = [self.text_of(int(number), int(launch)) for number, launch in pairs]
+        return texts
+
+    def as_data(self) -> dict[str, Any]:
+        """The rows and the listed states as plain data."""
+        return {"rows": [asdict(row) for row in self.rows()], "listed": self.listed()}
 
 
 @dataclass(frozen=True)
@@ -87,7 +155,9 @@ class Model(Launch):
         return min(rise / (2 * (self.omega**2 + 2 * third + third**2)), 0.25)
 
 
-def check(count: int, seed: int, executor: Any = None, output: Any = None, family: str = "reference") -> RandomStates:
+def check(
+    count: int, seed: int, executor: Executor | None = None, output: str | Path | None = None, family: str = "reference"
+) -> RandomStates:
     """Fly `count` states, rounded up to whole cases.
 
     Parameters
@@ -126,10 +196,8 @@ def launches(seed: int, number: int) -> list[Model]:
 
 def flown(seed: int, number: int) -> Array:
     """An array (states, COLUMNS) of a case."""
-    drawn = launches(seed, number)
-    trials = (releases if _family(number) == "plastic" else impacts)(drawn)
-    rows = [[number, launch, 0.0, *judged(trial)] for launch, trial in enumerate(trials)]
-    return np.array(rows)
+    trials = (releases if _family(number) == "plastic" else impacts)(launches(seed, number))
+    return np.array([[number, launch, 0.0, *judged(trial)] for launch, trial in enumerate(trials)])
 
 
 def judged(trial: Trial) -> tuple[bool, bool, bool, float]:
@@ -165,8 +233,7 @@ def impacts(drawn: list[Model]) -> list[Trial]:
 
 def releases(drawn: list[Model]) -> list[Trial]:
     """Releases from rest with restitution 0: where they land, and the release after that."""
-    times = np.array([launch.tau for launch in drawn])
-    step = drawn[0].model.replace(restitution=0).release_map(times)
+    step = drawn[0].model.replace(restitution=0).release_map(np.array([launch.tau for launch in drawn]))
     with balls_at(BITS):
         return [
             release_trial(launch, int(status), float(landing), float(later))

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from singimpact.algebra.numbers import EPSILON, Array
-from singimpact.bench.random_rows import EACH, RandomStates
+from singimpact.bench.random_states import EACH, RandomStates
 from singimpact.bench.steep_families import FAMILIES, NAMES, PARAMETRIC, SMOOTH, STEEP, Family
 from singimpact.bench.truth import graded_steps
 from singimpact.bench.truth.graded_steps import HIT, MISS, PHASE, Motion
@@ -122,8 +122,7 @@ def drawn_of(family: Family, rng: Generator, count: int) -> Case:
     tau = rng.uniform(0, 6 * pi / numbers["omega"], count)
     for kind, centre, _, _, spacing in family.layers_of(numbers):
         if kind == PHASE:  # launched ahead of the layer by less than a flight takes, about pi v/(1 + v)
-            turns = rng.integers(1, 4, count)
-            tau = centre + turns * spacing - rng.uniform(0, 0.8, count) * pi * v / (1 + v)
+            tau = centre + rng.integers(1, 4, count) * spacing - rng.uniform(0, 0.8, count) * pi * v / (1 + v)
     return Case(family, numbers, clearance, tau, v)
 
 

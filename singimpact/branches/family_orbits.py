@@ -71,7 +71,7 @@ class FamilyOrbits(Result):
         return f"FamilyOrbits({shown}; shown to be all for {np.sum(self.complete)} models)"
 
 
-def orbits_of_members(osc: OscillatorFamily, n: Any, k: int | None = None, **others: Any) -> FamilyOrbits:
+def orbits_of_members(osc: OscillatorFamily, n: float | str, k: int | None = None, **others: Any) -> FamilyOrbits:
     """The orbits of n impacts in k periods of every model.
 
     Parameters
@@ -89,20 +89,21 @@ def orbits_of_members(osc: OscillatorFamily, n: Any, k: int | None = None, **oth
     if others.get("digits") is not None:
         raise refuse("digits", others["digits"], "none for a family; osc.over(...)[i].periodic(...) takes them")
     model, left = osc.osc, np.ones(osc.shape, bool)
+    plain = model.upper is None and model.period is not None and not names_in(model.restitution)
     rows: list[tuple[int, Array, Array, Array]] = []
-    if n == 1 and not others and _is_linear(osc):
+    if n == 1 and plain and not any(others.values()) and isinstance(family(model, tuple(osc.flat)), LinearFamily):
         table, left = in_parts(osc, (0.0, 0.0, None), partial(_closed, whole("k", k, 1, PERIODIC.most)))
         table = table.reshape(osc.size, *table.shape[-2:])
         for index, slot in np.argwhere(np.isfinite(table[..., 1]) & ~left.reshape(-1, 1)).tolist():
-            one = table[index, slot]
-            rows.append((index, one[:1].real, one[1:2].real, one[2:]))
+            rows.append((index, table[index, slot, :1].real, table[index, slot, 1:2].real, table[index, slot, 2:]))
     complete = ~left
+    # a graze, or a solution that roundings leave open, is a matter of one model
     for index in np.flatnonzero(left).tolist():
         orbits = periodic(osc.member(index), n, k, **others)
         rows += [(index, orbit.tau, orbit.v, orbit.multipliers) for orbit in orbits]
         complete.flat[index] = n == 1 and orbits.complete
     rows.sort(key=lambda row: (row[0], *row[1], *row[2]))
-    count = 1 if n == 0 or n == np.inf else n if not isinstance(n, str) else len(n)
+    count = len(n) if isinstance(n, str) else int(n) if 0 < n < np.inf else 1
     member = np.array([row[0] for row in rows], int)
     numbers = {name: values[member] for name, values in osc.flat.items()}
     tau, v = (np.array([row[i] for row in rows]).reshape(-1, count) for i in (1, 2))
@@ -110,14 +111,7 @@ def orbits_of_members(osc: OscillatorFamily, n: Any, k: int | None = None, **oth
     return FamilyOrbits(model, n, int(k or 0), member, numbers, tau, v, multipliers, complete)
 
 
-def _is_linear(osc: OscillatorFamily) -> bool:
-    """Whether orbits of one impact have a closed form."""
-    model = osc.osc
-    clocked = model.upper is None and model.period is not None and not names_in(model.restitution)
-    return clocked and isinstance(family(model, tuple(osc.flat)), LinearFamily)
-
-
-def _closed(k: int, members: Members, which: Array, *_: Any) -> tuple[Array, Array]:
+def _closed(k: int, members: Members, which: Array, *_: Array) -> tuple[Array, Array]:
     """Phase, velocity and multipliers of each solution of one impact, nan of virtual ones; and whether that is open.
 
     Returns

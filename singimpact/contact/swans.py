@@ -212,8 +212,7 @@ def _named_time(model: Oscillator, slope: Expression, zero: Zero) -> Expression:
 
 def _root(tree: Expression, variable: str, piece: Zero) -> Root:
     """The zero on a piece, between short decimals where the piece contains them."""
-    middle = as_rational(refined(tree, variable, piece, 64).mid())
-    low = Fraction(floor(middle * GRID), GRID)
+    low = Fraction(floor(as_rational(refined(tree, variable, piece, 64).mid()) * GRID), GRID)
     ends = (low, low + Fraction(1, GRID)) if piece.low <= low < low + Fraction(1, GRID) <= piece.high else None
     function = substitute(tree, {variable: Name(BOUND)})
     found = Root(function, *(ends or (piece.low, piece.high)))

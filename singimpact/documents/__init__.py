@@ -6,7 +6,6 @@ Not here: pictures (`scenes`), the mathematics that is shown (`theory`), the wor
 from singimpact.handed_on import names_of
 
 _FILES = {
-    "arranging": "by_degree factored in_powers",
     "compiling": "CompileError compiled",
     "document_steps": "Mark Section Step claims_of equations_of",
     "rendering": "PAGE as_data as_files as_latex as_markdown as_text latex_text lines_of width",

@@ -368,8 +368,7 @@ class _Exact(StrPrinter):
     """Python text of an expression: no quotient of two whole numbers, and decimals with all their digits."""
 
     def _print_Float(self, expr: Any) -> str:
-        digits = max(round(expr._prec * 0.30103), 15)
-        return f'Float("{expr!s}", {digits})'
+        return f'Float("{expr!s}", {max(round(expr._prec * 0.30103), 15)})'
 
     def _print_Rational(self, expr: Any) -> str:
         return f"S({expr.p})/{expr.q}"

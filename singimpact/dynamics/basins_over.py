@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from singimpact.algebra.numbers import Array
+from singimpact.algebra.numbers import Array, as_float, constant
 from singimpact.cases import in_threads
 from singimpact.dynamics.basins_of_attraction import (
     SETTINGS,
@@ -117,11 +117,9 @@ def basins_over(
     """
     side = checked_wall(model, wall)
     model = with_number(model, over)
-    count, seed = (
-        whole("states", sampling.pop("states", 400), 1, 10**6),
-        whole("seed", sampling.pop("seed", 0), 0, 2**63),
-    )
-    jump = float(sampling.pop("jump", JUMP))
+    count = whole("states", sampling.pop("states", 400), 1, 10**6)
+    seed = whole("seed", sampling.pop("seed", 0), 0, 2**63)
+    jump = as_float(constant("jump", sampling.pop("jump", JUMP)))
     numbers = np.linspace(*window_ends(over, between), whole("values", values, 2, 10**5))
     places = np.random.default_rng(seed).random((2, count))
     models = [model.replace(**{over: value}) for value in numbers.tolist()]

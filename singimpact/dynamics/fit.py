@@ -238,12 +238,14 @@ class _Motion:
         flight = np.searchsorted(run.states[:, 0], self.t) - 1
         inside = np.flatnonzero((flight >= 0) & np.isin(flight, run.links))
         rows, slots, entries, off = [], [], [], np.empty(inside.size)
+        clearance = run.values.get(CLEARANCE, as_float(run.moving.osc.clearance))
+        by_clearance = [float(name == CLEARANCE) for name in run.moving.over]
         for row, at in enumerate(inside.tolist()):
             i = int(flight[at])
             tau, v = run.states[i].tolist()
             end = run.moving.end(run.values, tau, v, float(self.t[at]) - tau)
-            off[row] = self.x[at] - run.values.get(CLEARANCE, as_float(run.moving.osc.clearance)) - end.place[0]
-            by_numbers = end.by_numbers[:, 0] + [float(name == CLEARANCE) for name in run.moving.over]
+            off[row] = self.x[at] - clearance - end.place[0]
+            by_numbers = end.by_numbers[:, 0] + by_clearance
             rows += [row] * (2 + by_numbers.size)
             slots += [2 * i, 2 * i + 1, *range(run.size - by_numbers.size, run.size)]
             entries += [end.by_tau[0] - end.by_time[0], end.by_v[0], *by_numbers]
@@ -347,8 +349,7 @@ class _Run:
             _, off, orbit = self.record.rows(self)
             weights = diags_array(np.tile(1 / self.record.sizes**2, len(off)))
             soft = diags_array(np.full(missed.size, -((loose * float(self.record.sizes[0])) ** 2)))
-            # a state that nothing was measured of stays where it is
-            # weight of a step beside that of what was measured
+            # a light weight of each step: a state that nothing was measured of stays where it is
             still = diags_array(np.full(self.size, 1e-9 / float(self.record.sizes[0]) ** 2))
             normal = orbit.T @ weights @ orbit + still
             matrix = csc_array(block_array([[normal, slopes.T], [slopes, soft]]))
@@ -407,14 +408,17 @@ class _Run:
     def result(self, names: tuple[str, ...]) -> Fit:
         """The result of the last step."""
         t, off, _ = self.record.rows(self)
-        error = dict(zip(names, np.sqrt(np.diag(self.covariance)).tolist(), strict=True))
-        noise, missing = dict(zip(self.record.names, self.record.sizes.tolist(), strict=True)), len(self.states)
-        numbers = (
+        tau, v = self.states.T
+        return Fit(
             self.moving.oscillator(self.values),
             self.values,
-            error,
+            dict(zip(names, np.sqrt(np.diag(self.covariance)).tolist(), strict=True)),
             self.covariance,
-            self.states[:, 0],
-            self.states[:, 1],
+            tau,
+            v,
+            t,
+            off,
+            dict(zip(self.record.names, self.record.sizes.tolist(), strict=True)),
+            len(self.states) - len(self.seen),
+            tuple(self.cut),
         )
-        return Fit(*numbers, t, off, noise, missing - len(self.seen), tuple(self.cut))

@@ -233,7 +233,7 @@ class LinearFamily(Family):
         bend = matrix[1] @ (grown[:n, :n] @ start)
         return End(state, np.array([state[1], bend]), flow @ turned, flow[:, 1].copy(), by_numbers)
 
-    def constants(self, values: Mapping[str, Array]) -> list[Any]:
+    def constants(self, values: Mapping[str, Array]) -> list[Array]:
         """The values of `numbers`, or of arrays of numbers."""
         return [evaluate(tree, values, DOUBLES) for tree, _ in self._trees]
 
@@ -259,7 +259,7 @@ class LinearFamily(Family):
         angles = [p[3 + 4 * j].value * tau + p[4 + 4 * j].value for j in range(self.waves)]
         return np.array([0.0, v, 1.0, *(part for angle in angles for part in (cos(angle), sin(angle)))])
 
-    def _matrix(self, p: list[Any], flow: bool = True, shape: tuple[int, ...] = ()) -> Array:
+    def _matrix(self, p: Sequence[Array | float], flow: bool = True, shape: tuple[int, ...] = ()) -> Array:
         """M of these numbers; linear in them but for the 1 of x - c, which a derivative has not."""
         size = 3 + 2 * self.waves
         matrix = np.zeros((size, size, *shape))

@@ -32,8 +32,7 @@ def series_of_rho(osc: Oscillator, order: int, ring: Any) -> dict[int, Any]:
         jet = space.evaluate(osc.rho(), {"v": space.generators()[0]})
         return {k: value for k in range(1, order + 1) if (value := jet.coefficient((k,))) != 0}
     except NotSmooth:  # a part of the formula is not smooth, although rho is: |v|, or cos(sqrt(-v))
-        series = _to(osc, order)
-        terms = {int(e): c for e, c in series.terms if e <= order and sign_of(c)}
+        terms = {int(e): c for e, c in _to(osc, order).terms if e <= order and sign_of(c)}
         return {k: (-1) ** k * evaluate(value, {}, ring) for k, value in terms.items()}
 
 

@@ -194,8 +194,7 @@ def around(osc: Oscillator, start: Any, order: int, balls: Balls) -> Any:
         if not order:
             return balls.evaluate(_moving_part(osc)[0], {"t": start}) - force
         space = JetSpace(("s",), order, balls)
-        moved = space.constant(start) + space.generators()[0]
-        jet = space.evaluate(_moving_part(osc)[0], {"t": moved})
+        jet = space.evaluate(_moving_part(osc)[0], {"t": space.constant(start) + space.generators()[0]})
         # log has a slope on paper where it is no number: nan goes on to it
         return jet.coefficient((order,)) * factorial(order) + 0 * jet.coefficient((0,))
 

@@ -13,6 +13,7 @@ _FILES = {
     "claims.claim": (
         "Check Claim IN_MODEL KINDS MODULO PROVED STRENGTH STRONGEST_FIRST Statement Trial Verdict compared told"
     ),
+    "claims.beyond.holder": "STARTS beside",
     "claims.deciding": "decide effective",
     "claims.engine": "imported_by keep key_of recall",
     "claims.index": "COLOURS as_svg claims_in colour_of",
@@ -38,7 +39,6 @@ _FILES = {
     "trials.first_order_feet": "MODELS clearance measured",
     "trials.hertz_orbits": "POWERS above constant edge",
     "trials.loop_heights": "SWANS generations heights inner_start",
-    "trials.orbits_beside_gamma": "STARTS beside",
     "trials.true_orbits": "gamma_cases scipy_flow",
 }
 __getattr__ = names_of(__name__, _FILES)

@@ -141,8 +141,7 @@ def crossing(flights: RestFlights, tau: float, t: float) -> tuple[float, float] 
 
 def _rests(points: Array, column: Array, flights: RestFlights) -> list[_Named]:
     made = []
-    turns = np.flatnonzero((column[:-1] * column[1:] < 0) & (points[:-1, 1] * points[1:, 1] > 0))
-    for i in turns.tolist():
+    for i in np.flatnonzero((column[:-1] * column[1:] < 0) & (points[:-1, 1] * points[1:, 1] > 0)).tolist():
         share = column[i] / (column[i] - column[i + 1])
         settled = _rest(flights, points[i] + share * (points[i + 1] - points[i]))
         if settled is not None:

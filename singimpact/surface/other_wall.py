@@ -69,8 +69,7 @@ class OtherWall:
         ]
         own = [(flight.status == Status.hit) & (flight.wall == Wall.upper) for flight in flights]
         back, ahead = (np.where(at, flight.flight_time, np.nan) for at, flight in zip(own, flights, strict=True))
-        velocity = np.where(own[0], flights[0].velocity, np.nan)
-        return np.stack([s - back, velocity, back + ahead], axis=1)
+        return np.stack([s - back, np.where(own[0], flights[0].velocity, np.nan), back + ahead], axis=1)
 
     def cut(self, window: Window, columns: tuple[int, int], cell: float) -> list[Array]:
         """The cut in a window of launch times and flight times, as polylines of two columns of `grazes`.

@@ -215,8 +215,7 @@ def _with_more_rests(
     for meeting in met:
         gap, kind = meeting.gaps[-1], meeting.kind
         if kind == "tacnode":
-            flights = RestFlights(family.at(meeting.value))
-            back = flights.by_speed(np.array([meeting.first]), np.array([gap]))[0, 1]
+            back = RestFlights(family.at(meeting.value)).by_speed(np.array([meeting.first]), np.array([gap]))[0, 1]
             kind = "tacnode, opposite" if back < 0 else "tacnode, same"
         (first,) = in_first_period((meeting.first,), family.at(meeting.value))
         rests = (first, *(first + offset for offset in meeting.gaps))

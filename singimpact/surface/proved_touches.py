@@ -154,8 +154,7 @@ class _Search:
             while stack and count < SETTINGS.most and len(undecided) < SETTINGS.lost:
                 count += 1
                 line.show(count, None, "boxes of flights")
-                box = stack.pop()
-                smaller = self._without_rest(box)
+                smaller = self._without_rest(stack.pop())
                 if smaller is None:
                     continue
                 shares = [float((high - low) / size) for (low, high), size in zip(smaller, sizes, strict=True)]

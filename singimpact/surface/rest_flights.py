@@ -65,8 +65,7 @@ class RestFlights:
         for side, model, turn in ((t >= 0, self.model, 1), (t < 0, backwards(self.model), -1)):
             if side.any():
                 at = np.abs(t[side])
-                answer = variations(model, turn * tau[side], np.zeros(at.size), at)
-                slopes[side] = answer[:, :2] * [turn, 1]
+                slopes[side] = variations(model, turn * tau[side], np.zeros(at.size), at)[:, :2] * [turn, 1]
         return slopes
 
     def rest_matrix(self, tau: Array, t: Array, velocity: Array) -> Array:

@@ -132,8 +132,7 @@ def _small_ones(
         finer = np.linspace(*small.x, 17), np.linspace(*small.y, 17)
         inner = grid(*finer)
         if inner.min() < 0 < inner.max():
-            rising = inner if values[i, j] < 0 else -inner
-            index = np.unravel_index(np.argmax(rising), inner.shape)
+            index = np.unravel_index(np.argmax(inner if values[i, j] < 0 else -inner), inner.shape)
             loops.append((np.array([finer[0][index[1]], finer[1][index[0]]]), float(np.ptp(finer[0])) / 16))
         # refinements of the grid around an extremum of y
         elif depth < 3 and np.abs(inner).min() < 0.5 * np.abs(values[i, j]):

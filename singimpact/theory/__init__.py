@@ -36,7 +36,7 @@ _FILES = {
         "DG_on_ray P Q eigenvalues_on_gamma lambda_ launch_velocity leading_coefficient minimal_polynomial "
         "mu_of_lambda of_m r_of_lambda series"
     ),
-    "notation": "latex",
+    "notation": "by_degree factored in_powers latex",
     "plane_forms": "fold_form normal_form",
 }
 _value_of = _names_of(__name__, _FILES)

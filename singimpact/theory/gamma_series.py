@@ -130,8 +130,7 @@ class _Solver:
         j, start, z = self.j, self.tau[0], self.polys.poly([0, 1])
         lead = [self.a[j] * (start**q * comb(j, q)) for q in range(j + 1)]
         self.bracket_tangent = self.polys.poly([0] + [self.a[j] * (start**q * (j * comb(j - 1, q))) for q in range(j)])
-        right = self.polys.poly(lead) + self.bracket_tangent * start
-        twice = self.polys.integral(self.polys.integral(right))
+        twice = self.polys.integral(self.polys.integral(self.polys.poly(lead) + self.bracket_tangent * start))
         self.launch_tangent = self.polys.at_one(twice) * -1
         self.y_tangent = twice + z * self.launch_tangent
         self.impact_tangent = self.polys.at_one(self.polys.derivative(self.y_tangent))

@@ -259,5 +259,4 @@ def _mu(j: int, rate: fmpq_series, end: int, order: int) -> fmpq_series:
         sum((fmpq_series([c]) * rate**n for n, c in enumerate(_coefficients(part).coeffs())), 0 * rate)
         for part in (P(j), Q(j))
     )
-    below = fmpq_series(rate.coeffs()[1:], prec=order + 1) if end == 0 else rate
-    return p * p / (q * q * below)
+    return p * p / (q * q * (fmpq_series(rate.coeffs()[1:], prec=order + 1) if end == 0 else rate))

@@ -207,12 +207,11 @@ def _of_model(order: int, model: Any, tau: Any, digits: int) -> ShownForm:
         return shown_form(found, lambda ball: sympy_digits(ball, digits))
 
     return with_digits(  # type: ignore[no-any-return]
-        lambda ring: reduced(sheet(where.contact(order, ring), order).v, 2), digits, shown, _numbers
+        lambda ring: reduced(sheet(where.contact(order, ring), order).v, 2),
+        digits,
+        shown,
+        lambda form: [form.lead, *form.source.terms.values(), *form.offset.terms.values()],
     )
-
-
-def _numbers(found: NormalForm) -> list[Any]:
-    return [found.lead, *found.source.terms.values(), *found.offset.terms.values()]
 
 
 def shown_form(form: NormalForm, number: Callable[[Any], Any] | None = None) -> ShownForm:

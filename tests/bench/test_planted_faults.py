@@ -19,7 +19,7 @@ from singimpact.bench import (
     rebounds,
     row as basin_pixels_row,
 )
-from singimpact.bench.selftest import tangencies
+from singimpact.bench.selftest import run
 from singimpact.contact import TangencyPoints
 from singimpact.dynamics import CHAOS
 from singimpact.flights import TIME_BY_V, CompiledModel, allowed, batch_model, scratch_of
@@ -34,7 +34,7 @@ BENT = si.ImpactOscillator("x", "cos(2*t)", "0.3", "-0.8*v/sqrt(1 + v**2)")
 BETWEEN_SEVERAL = si.linear("2.8", "-0.5", "0.8", damping="0.05", amplitude=4, upper="0.5")  # four attractors
 ROWS = {
     "orbits": orbits_orbits, "limits": limits, "D G": derivatives, "rebounds": rebounds,
-    "batches": lanes, "grazes": grazes, "basins": basin_pixels_row, "tangencies": tangencies.row,
+    "batches": lanes, "grazes": grazes, "basins": basin_pixels_row, "tangencies": run.tangency_row,
 }  # fmt: skip
 
 
@@ -158,7 +158,7 @@ def upper_lift_offs_below():
 
 def lost_point():
     wrong = lambda true: lambda osc: TangencyPoints(true(osc)[1:])  # noqa: E731
-    return "bench.selftest.tangencies.tangency_points", wrong
+    return "bench.selftest.run.tangency_points", wrong
 
 
 FAULTS = {

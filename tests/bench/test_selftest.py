@@ -19,7 +19,7 @@ from singimpact.bench import (
     orbits as orbits_orbits,
     row as basin_pixels_row,
 )
-from singimpact.bench.selftest import responses, rows, tangencies
+from singimpact.bench.selftest import responses, rows, run
 from singimpact.contact import TangencyPoints
 from singimpact.dynamics import basins_of_attraction
 from singimpact.inputs import InputError
@@ -139,11 +139,11 @@ def test_pixels_of_a_wrong_class_are_wrong(monkeypatch):
 
 def test_missing_and_misnamed_tangency_points_are_wrong(monkeypatch):
     states, points = flown(DUFFING, 3, 0), si.tangency_points(DUFFING)
-    monkeypatch.setattr(tangencies, "tangency_points", lambda _: TangencyPoints(points[:1]))
-    assert tangencies.row(states).wrong == 1
+    monkeypatch.setattr(run, "tangency_points", lambda _: TangencyPoints(points[:1]))
+    assert run.tangency_row(states).wrong == 1
     swapped = TangencyPoints([replace(points[0], kind="gamma"), points[1]])
-    monkeypatch.setattr(tangencies, "tangency_points", lambda _: swapped)
-    assert tangencies.row(states).wrong == 1
+    monkeypatch.setattr(run, "tangency_points", lambda _: swapped)
+    assert run.tangency_row(states).wrong == 1
 
 
 def test_slow_rows_end_and_say_so(monkeypatch):

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from reference_states import Reference, states as problems
 
-from singimpact.bench import Cubic, Linear, Trial, first_hit, hit_trial, random_rows, random_states, release_trial
+from singimpact.bench import Cubic, Linear, Trial, first_hit, hit_trial, random_states, release_trial
 from singimpact.impact_oscillator import ImpactOscillator
 from singimpact.status import Status
 
@@ -127,8 +127,8 @@ def test_command(singimpact) -> None:
 
 @pytest.mark.parametrize("bad", [0, 1])
 def test_the_command_fails_where_a_state_is_wrong(singimpact, monkeypatch, bad: int) -> None:
-    columns = {name: np.zeros(1) for name in random_rows.COLUMNS} | {"wrong": np.full(1, bad)}
-    planted = random_rows.RandomStates(columns, lambda _: "linear", lambda *_: "omega = 2")
+    columns = {name: np.zeros(1) for name in random_states.COLUMNS} | {"wrong": np.full(1, bad)}
+    planted = random_states.RandomStates(columns, lambda _: "linear", lambda *_: "omega = 2")
     monkeypatch.setattr(random_states, "check", lambda *_: planted)
     told = singimpact("bench", "states", "--workers", "1")
     assert told.exit_code == bad

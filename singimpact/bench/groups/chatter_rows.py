@@ -9,7 +9,7 @@ from functools import partial
 from singimpact.bench.drawn import CHATTERING, Draws, Problem, States, counted, model, pressing, values
 from singimpact.bench.groups.impact_map_rows import ACCURACY, HEYOKA, SCIPY, taylor_stepper
 from singimpact.bench.measuring import Case, Effort, Method, condition, with_peers
-from singimpact.bench.peers import followed_impacts, runge_kutta, taylor_events
+from singimpact.bench.peers import followed_impacts
 from singimpact.bench.peers.followed_impacts import Fly
 from singimpact.dynamics.threshold import threshold
 from singimpact.impact_oscillator import linear
@@ -41,8 +41,10 @@ def _case(r: str, effort: Effort) -> Case:
     ]
     methods, skipped = with_peers(
         own,
-        lambda: [_flown("scipy DOP853, 1e-9", runge_kutta.stepper("linear", 1e-9), problem, s) for s in stops],
-        lambda: [_flown("heyoka, 1e-9", taylor_events.stepper("linear", 1e-9), problem, s) for s in stops],
+        lambda: [
+            _flown("scipy DOP853, 1e-9", followed_impacts.scipy_stepper("linear", 1e-9), problem, s) for s in stops
+        ],
+        lambda: [_flown("heyoka, 1e-9", followed_impacts.heyoka_stepper("linear", 1e-9), problem, s) for s in stops],
     )
     kappa = condition(lambda tau, v: float(osc.chatter_limit(tau, v).tau), 1.2, 0.01, 1e-4)
     return Case(f"linear, r = {r}", methods, [values()[NAME.format(r)]], [kappa], skipped)
@@ -70,7 +72,7 @@ def states_case(family: str, restitution: float, count: int, effort: Effort) -> 
     methods, skipped = with_peers(
         own,
         lambda: [summed(HEYOKA, taylor_stepper(kind), draw(5))],
-        lambda: [summed(SCIPY, runge_kutta.stepper(kind, ACCURACY[SCIPY]), draw(1))],
+        lambda: [summed(SCIPY, followed_impacts.scipy_stepper(kind, ACCURACY[SCIPY]), draw(1))],
     )
     # of linear models these are enclosures, which share no flight with the answers in doubles
     judged = draw(1 if effort.quick else JUDGED[restitution])().problems()
@@ -114,20 +116,24 @@ def phases_case(restitution: float, effort: Effort) -> Case:
     """Some calls of one phase of the linear model, judged with 20 digits; peers bisect to a relative width."""
     draw = partial(Draws, "linear", "chattering", restitution=restitution)
     osc, setting = model("linear", restitution), f"{counted(1, 'phase')} a call"
-    own = [Method("singimpact, threshold", setting, _a_phase, problems=PHASES, draw=draw(PHASES))]
+    own = [
+        Method(
+            "singimpact, threshold",
+            setting,
+            lambda states: [float(threshold(states.osc, tau).v) for tau in states.tau.tolist()],
+            problems=PHASES,
+            draw=draw(PHASES),
+        )
+    ]
     methods, skipped = with_peers(
         own,
         lambda: [between(HEYOKA, taylor_stepper("linear"), draw(1))],
-        lambda: [between(SCIPY, runge_kutta.stepper("linear", 1e-9), draw(1))],
+        lambda: [between(SCIPY, followed_impacts.scipy_stepper("linear", 1e-9), draw(1))],
     )
     phases = draw(1 if effort.quick else JUDGED_PHASES)().tau.tolist()
     truth = [threshold(osc, tau, digits=20).v for tau in phases]
     kappas = [condition(lambda tau, _: float(threshold(osc, tau).v), tau, 1.0, 1e-4) for tau in phases]
     return Case(f"linear, c = 0.3, r = {restitution:g}, {setting}", methods, truth, kappas, skipped)
-
-
-def _a_phase(states: States) -> list[float]:
-    return [float(threshold(states.osc, tau).v) for tau in states.tau.tolist()]
 
 
 def between(name: str, fly: Fly, draw: Draws) -> Method:

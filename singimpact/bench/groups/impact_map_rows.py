@@ -1,19 +1,23 @@
 """Cases of the impact map: what a state costs a user's own loop, by states of a call and by their kind; its derivative.
 
 Every timed call has other states, and another restitution from 0.5 to 0.999; the answers of the first one are judged
-by balls (`truth.drawn_flights`).
+by balls of 60 digits and more.
 """
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache, partial
+from math import log2, pi
 from typing import Any
 
-from singimpact.bench.drawn import Draws, Problem, counted
+import flint
+
+from singimpact.algebra.precision import balls_at
+from singimpact.bench.drawn import CLEARANCES, OMEGAS, Draws, Problem, States, counted
 from singimpact.bench.measuring import Case, Effort, Method, with_peers
-from singimpact.bench.peers import runge_kutta, taylor_events
+from singimpact.bench.peers import followed_impacts
 from singimpact.bench.peers.followed_impacts import Fly
-from singimpact.bench.truth import drawn_flights
+from singimpact.bench.truth.first_hit import Cubic, Linear, first_hit
 from singimpact.impact_oscillator import ImpactOscillator
 
 HEYOKA, SCIPY = "heyoka, terminal event", "scipy DOP853, terminal event"
@@ -57,9 +61,9 @@ def map_case(family: str, kind: str, alone: bool, sizes: Sizes) -> Case:
     methods, skipped = with_peers(
         own,
         lambda: [_peer(HEYOKA, _time(taylor_stepper(family)), draw(sizes.heyoka))],
-        lambda: [_peer(SCIPY, _time(runge_kutta.stepper(family, ACCURACY[SCIPY])), draw(sizes.scipy))],
+        lambda: [_peer(SCIPY, _time(followed_impacts.scipy_stepper(family, ACCURACY[SCIPY])), draw(sizes.scipy))],
     )
-    truth, kappas = drawn_flights.hits(draw(count)(), sizes.judged[family])
+    truth, kappas = true_hits(draw(count)(), sizes.judged[family])
     return Case(f"{family}, {kind}, {setting}", methods, truth, kappas, skipped)
 
 
@@ -77,7 +81,7 @@ def _one_a_call(drawn: tuple[ImpactOscillator, list[tuple[float, float]]]) -> li
 @lru_cache(maxsize=4)
 def taylor_stepper(family: str) -> Fly:
     """heyoka's integrator, compiled once."""
-    return taylor_events.stepper(family, ACCURACY[HEYOKA])
+    return followed_impacts.heyoka_stepper(family, ACCURACY[HEYOKA])
 
 
 def _time(fly: Fly) -> Callable[[Problem], Sequence[float]]:
@@ -111,8 +115,104 @@ def derivative_case(sizes: Sizes) -> Case:
     ]
     methods, skipped = with_peers(
         own,
-        lambda: [_peer(HEYOKA, taylor_events.varied(ACCURACY[HEYOKA]), draw(sizes.heyoka))],
-        lambda: [_peer(SCIPY, runge_kutta.varied(ACCURACY[SCIPY]), draw(sizes.scipy))],
+        lambda: [_peer(HEYOKA, followed_impacts.heyoka_derivative(ACCURACY[HEYOKA]), draw(sizes.heyoka))],
+        lambda: [_peer(SCIPY, followed_impacts.scipy_derivative(ACCURACY[SCIPY]), draw(sizes.scipy))],
     )
-    truth, kappas = drawn_flights.derivatives(draw(sizes.many)(), sizes.judged["linear"])
+    truth, kappas = true_derivatives(draw(sizes.many)(), sizes.judged["linear"])
     return Case("linear, derivative of the map", methods, truth, kappas, skipped)
+
+
+BITS = 320
+HORIZON = 2000.0
+SMALL = 10.0**-25  # relative step of a difference; the values have 60 digits and more
+DIGITS = 40
+Truth = tuple[list[str], list[float]]
+# From a state in balls to values and the times at which they are reached.
+Values = Callable[[Any, Any], tuple[list[Any], list[Any]]]
+
+
+def true_hits(states: States, count: int) -> Truth:
+    """Flight times of the first states, as decimal text, and their condition numbers.
+
+    Examples
+    --------
+    >>> from singimpact.bench.drawn import Draws
+    >>> truth, kappas = true_hits(Draws("linear", "generic", 3)(), 1)
+    >>> len(truth[0]) > DIGITS, 1 < kappas[0] < 100
+    (True, True)
+    """
+
+    def values(tau: Any, v: Any) -> tuple[list[Any], list[Any]]:
+        time, _, _ = _hit(states, tau, v)
+        return [time], [time]
+
+    return _judged(states, count, values)
+
+
+def true_derivatives(states: States, count: int) -> Truth:
+    """The four entries of D G at the first states of a linear model, row by row."""
+
+    def values(tau: Any, v: Any) -> tuple[list[Any], list[Any]]:
+        time, u, motion = _hit(states, tau, v)
+        e, r = motion.at(time)[2], flint.arb(states.restitution)
+        (z_by_tau, u_by_tau), (z_by_v, u_by_v) = motion.variations(time)
+        time_by_tau, time_by_v = -z_by_tau / u, -z_by_v / u
+        rows = [1 + time_by_tau, time_by_v, -r * (u_by_tau + e * time_by_tau), -r * (u_by_v + e * time_by_v)]
+        return rows, [time] * 4
+
+    return _judged(states, count, values)
+
+
+def true_impacts(states: States, count: int, wanted: Sequence[int]) -> Truth:
+    """The times of the impacts with the numbers `wanted`, from 1, of the orbits of the first states."""
+
+    def values(tau: Any, v: Any) -> tuple[list[Any], list[Any]]:
+        times = []
+        for number in range(1, max(wanted) + 1):
+            time, u, _ = _hit(states, tau, v)
+            tau, v = tau + time, -flint.arb(states.restitution) * u
+            if number in wanted:
+                times.append(tau)
+        return times, times
+
+    return _judged(states, count, values)
+
+
+def _hit(states: States, tau: Any, v: Any) -> tuple[Any, Any, Any]:
+    """Time, velocity and motion of a flight that hits."""
+    kind = Cubic if states.family == "duffing" else Linear
+    motion: Any = kind(OMEGAS[states.family], CLEARANCES[states.family], tau, v)
+    found = first_hit(motion, float(v), HORIZON)
+    if found is None:
+        raise ArithmeticError(f"no hit from {float(tau)!r}, {float(v)!r} within {HORIZON}")
+    return *found, motion
+
+
+def _judged(states: States, count: int, values: Values) -> Truth:
+    truth: list[str] = []
+    kappas: list[float] = []
+    for tau, v in zip(states.tau[:count].tolist(), states.v[:count].tolist(), strict=True):
+        with balls_at(BITS + int(8 * max(-log2(v), 0))):
+            found, times = values(flint.arb(tau), flint.arb(v))
+            truth += [each.str(DIGITS, radius=False) for each in found]
+            kappas += _conditions(states, (tau, v), values, (found, times))
+    return truth, kappas
+
+
+def _conditions(states: States, state: tuple[float, float], values: Values, answer: Any) -> list[float]:
+    """The condition number of each value F, which is reached after a time T.
+
+        kappa = 1 + (|dF/dtau| max(|tau|, T) + |dF/dv| v)/|F|
+
+    tau counts within one period of the forcing: a double is an exact time, and what is lost by rounding omega tau is an
+    error.
+    """
+    tau, v = map(flint.arb, state)
+    period = 2 * pi / OMEGAS[states.family]
+    small = flint.arb(SMALL)
+    by_tau, by_v = values(tau + small, v)[0], values(tau, v * (1 + small))[0]
+    near = abs(state[0] - period * round(state[0] / period))
+    return [
+        1 + float((abs(a - value) / small * max(near, float(time)) + abs(b - value) / small) / abs(value))
+        for value, time, a, b in zip(*answer, by_tau, by_v, strict=True)
+    ]

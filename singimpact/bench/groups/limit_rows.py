@@ -166,8 +166,7 @@ def arrays(effort: Effort) -> list[Method]:
         if name in ("linear", "Duffing"):
             members = 100 if effort.quick else 500
             for call, of in (("one model", one_by_one), ("a family", family_of)):
-                setting = f"{name}, 300 impacts"
-                rows.append(_plain(call, setting, None, 300 * members, of(model, members)))
+                rows.append(_plain(call, f"{name}, 300 impacts", None, 300 * members, of(model, members)))
             rows.append(_drawn("first_hit", f"{name}, array", aim, draw, model.first_hit))
             rows.append(_drawn("launch", f"{name}, array", 2 * aim, draw, _off_wall(model)))
             rows.append(_drawn("between walls", f"{name}, array", 1.5 * aim, draw, _between(model)))

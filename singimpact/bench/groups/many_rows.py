@@ -6,7 +6,6 @@ ensemble are chaotic: only their time is measured. A fit to impacts without nois
 
 from collections.abc import Callable, Iterator
 from functools import partial
-from typing import Any
 
 import numpy as np
 
@@ -15,7 +14,8 @@ from singimpact.algebra.numbers import Array
 from singimpact.bench.drawn import Problem
 from singimpact.bench.groups.impact_map_rows import ACCURACY, SCIPY
 from singimpact.bench.measuring import NO_AIM, Aim, Case, Effort, Method, with_peers
-from singimpact.bench.peers import fixed_steps, followed_impacts, runge_kutta
+from singimpact.bench.peers import fixed_steps, followed_impacts
+from singimpact.dynamics.orbit import Orbit
 
 MODELS = {
     "linear": si.linear("2.8", 0, "0.8"),
@@ -44,11 +44,7 @@ def regions(effort: Effort) -> Iterator[Case]:
         omegas, clearances = WINDOWS[family]
         places = [Problem(family, omega, c, 0.8, 0.0, 0.1) for omega in omegas for c in clearances]
         setting = f"{SETTLING} impacts a place"
-        methods, skipped = with_peers(
-            own,
-            partial(_numba, setting, places),
-            partial(_scipy, setting, places[:1]),
-        )
+        methods, skipped = with_peers(own, partial(_numba, setting, places), partial(_scipy, setting, places[:1]))
         yield Case(f"{family}, periods over omega and c, a place", methods, skipped=skipped)
 
 
@@ -65,7 +61,7 @@ def _numba(setting: str, places: list[Problem]) -> list[Method]:
 
 def _scipy(setting: str, places: list[Problem]) -> list[Method]:
     """A loop over events of scipy."""
-    fly = runge_kutta.stepper(places[0].family, ACCURACY[SCIPY])
+    fly = followed_impacts.scipy_stepper(places[0].family, ACCURACY[SCIPY])
     calls = [partial(followed_impacts.chain, fly, each, SETTLING) for each in places]
     return [timed(SCIPY, setting, len(places), lambda: [call() for call in calls])]
 
@@ -93,26 +89,25 @@ def fit(effort: Effort) -> Iterator[Case]:
         call = partial(si.fit, start, {"tau": seen.tau, "v": seen.v}, names)
         # times are known to their own roundings, which grow beside a flight
         own = Method("singimpact, fit", "", lambda call=call: list(call().values.values()), problems=count)
-        user = partial(_scipy_fit, seen, [0.7, 0.15])
         yield Case(
             f"numbers from {count} impacts, an impact",
-            [own, Method(SCIPY, "curve_fit of single flights", user, problems=count)],
+            [own, Method(SCIPY, "curve_fit of single flights", partial(_scipy_fit, seen), problems=count)],
             [0.8, 0.1],
             [float(count)] * 2,
         )
 
 
-def _scipy_fit(seen: Any, start: list[float]) -> list[float]:
+def _scipy_fit(seen: Orbit) -> list[float]:
     """A user's own fit: each measured impact flown to the next one."""
     from scipy.optimize import curve_fit
 
-    fly, states = runge_kutta.stepper("linear", ACCURACY[SCIPY]), np.stack([seen.tau, seen.v], axis=1)
+    fly, states = followed_impacts.scipy_stepper("linear", ACCURACY[SCIPY]), np.stack([seen.tau, seen.v], axis=1)
 
     def following(states: Array, r: float, c: float) -> Array:
         flown = np.array([fly(Problem("linear", 2.8, c, r, *state)) for state in states.tolist()])
         return np.asarray(flown * [1, -r] + states * [1, 0]).ravel()
 
-    return list(curve_fit(following, states[:-1], states[1:].ravel(), start)[0])
+    return list(curve_fit(following, states[:-1], states[1:].ravel(), [0.7, 0.15])[0])
 
 
 def family_of(model: si.ImpactOscillator, members: int) -> Callable[[], object]:

@@ -24,11 +24,11 @@ from singimpact.bench.groups.impact_map_rows import (
     map_case,
     sizes_of,
     taylor_stepper,
+    true_impacts,
 )
 from singimpact.bench.groups.many_rows import timed
 from singimpact.bench.measuring import NO_AIM, Case, Counted, Effort, Method, with_peers
-from singimpact.bench.peers import fixed_steps, followed_impacts, runge_kutta
-from singimpact.bench.truth import drawn_flights
+from singimpact.bench.peers import fixed_steps, followed_impacts
 
 TWO_BASINS = si.linear("2.8", "0.1", "0.8", amplitude=-1)
 FIRST = (1, 2, 3, 4, 5)  # impacts of each orbit that are judged
@@ -82,10 +82,10 @@ def _orbit_case(family: str, effort: Effort) -> Case:
     methods, skipped = with_peers(
         own,
         lambda: [_chained(HEYOKA, taylor_stepper(family), draw(starts), few[1])],
-        lambda: [_chained(SCIPY, runge_kutta.stepper(family, ACCURACY[SCIPY]), draw(few[0] // 2), 10)],
+        lambda: [_chained(SCIPY, followed_impacts.scipy_stepper(family, ACCURACY[SCIPY]), draw(few[0] // 2), 10)],
     )
     # a flight of Duffing's model takes 80 ms in balls
-    truth, kappas = drawn_flights.impacts(draw(starts)(), starts if family == "linear" else 2, FIRST)
+    truth, kappas = true_impacts(draw(starts)(), starts if family == "linear" else 2, FIRST)
     return Case(f"{family}, an impact of an orbit", methods, truth, kappas, skipped)
 
 

@@ -12,8 +12,7 @@ from math import copysign, inf, isfinite
 
 import numpy as np
 
-from singimpact.bench.selftest.draws import Flown, NotComparable, compared
-from singimpact.bench.selftest.rows import Tally
+from singimpact.bench.selftest.rows import Flown, NotComparable, Tally, compared
 from singimpact.bench.truth.graded_steps import HIT, MISS, UNDECIDED
 from singimpact.bench.truth.plain_orbits import PlainOrbits
 from singimpact.dynamics import basins_of_attraction

@@ -11,8 +11,7 @@ import numpy as np
 
 from singimpact.algebra.numbers import EPSILON, Array
 from singimpact.bench.drawn import compile_entries
-from singimpact.bench.selftest.draws import LEAST, Flown, compared
-from singimpact.bench.selftest.rows import Tally
+from singimpact.bench.selftest.rows import LEAST, Flown, Tally, compared
 from singimpact.bench.truth.graded_steps import HIT, MISS
 from singimpact.bench.truth.plain_orbits import PlainOrbits
 from singimpact.status import Status

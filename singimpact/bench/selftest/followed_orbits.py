@@ -9,8 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from singimpact.algebra.numbers import EPSILON
-from singimpact.bench.selftest.draws import LEAST, Flown, NotComparable, compared
-from singimpact.bench.selftest.rows import Tally
+from singimpact.bench.selftest.rows import LEAST, Flown, NotComparable, Tally, compared
 from singimpact.bench.truth.graded_steps import HIT, MISS, UNDECIDED
 from singimpact.bench.truth.plain_orbits import Impact, PlainOrbits
 from singimpact.status import Status

@@ -15,8 +15,7 @@ import numpy as np
 from singimpact import theory
 from singimpact.algebra.rings import EXACT
 from singimpact.bench.measuring import condition
-from singimpact.bench.stress.judging import DIGITS, Judge, Trial, moved, number, powers
-from singimpact.bench.stress.launches import Launch
+from singimpact.bench.stress.judging import DIGITS, Judge, Launch, Trial, moved, number, powers
 from singimpact.codegen.over_lists import plain
 from singimpact.contact.contact import Contact
 from singimpact.dynamics.invariant_arcs import grown_gamma, stable_manifold

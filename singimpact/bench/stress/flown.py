@@ -16,8 +16,7 @@ import numpy as np
 
 from singimpact.algebra.balls import as_rational
 from singimpact.algebra.precision import balls_at
-from singimpact.bench.stress.judging import STEP, Judge, Trial
-from singimpact.bench.stress.launches import Launch, SteepLaunch, both
+from singimpact.bench.stress.judging import STEP, Judge, Launch, SteepLaunch, Trial, both
 from singimpact.bench.truth.first_hit import first_of_both
 from singimpact.bench.truth.hit_in_balls import InBalls, enclosed
 from singimpact.flights.inverse_map import backwards
@@ -38,8 +37,7 @@ def landed(launch: SteepLaunch, tau: Fraction, v: Fraction, sign: int) -> InBall
     ----------
     sign : -1 for the flight backwards.
     """
-    model = launch.model if sign > 0 else backwards(launch.model)
-    return enclosed(model, tau, v, launch.horizon, DIGITS)
+    return enclosed(launch.model if sign > 0 else backwards(launch.model), tau, v, launch.horizon, DIGITS)
 
 
 def landing(launch: Launch, tau: Any, v: Any, sign: int = 1) -> InBalls | int:
@@ -131,8 +129,7 @@ def _flight(launch: Launch) -> Trial | None:
         size = sizes(launch, t)
         truth += [z + launch.clearance, u]
         slack += [abs(by_tau[n]) * size[0] + abs(by_v[n]) * size[1] + abs(rate) * t for n, rate in ((0, u), (1, e))]
-    samples = np.stack([path_.x, path_.xdot], axis=1).ravel().tolist()
-    return Trial(str(launch), samples, truth, slack)
+    return Trial(str(launch), np.stack([path_.x, path_.xdot], axis=1).ravel().tolist(), truth, slack)
 
 
 def _derivative(launch: Launch) -> Trial | None:

@@ -11,12 +11,11 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from singimpact.bench.stress import closed_forms, expanded, flown, named
-from singimpact.bench.stress.judging import LIMITS, Cell, Function, worst
-from singimpact.bench.stress.launches import PLACES
+from singimpact.bench.stress import expanded, flown, named
+from singimpact.bench.stress.judging import LIMITS, PLACES, Cell, Function, worst
 from singimpact.inputs import require_known, unknown
 
-JUDGES = flown.JUDGES | closed_forms.JUDGES | expanded.JUDGES | named.JUDGES
+JUDGES = flown.JUDGES | expanded.JUDGES | named.JUDGES
 
 
 def _function(

@@ -63,8 +63,7 @@ class Motion(NamedTuple):
 
     def flown(self, tau: float, v: float, horizon: float, fineness: float) -> Any:
         """`flown` of this motion."""
-        run = compiled_kernel()["flown"]
-        return run(*self[:3], (self.clearance, self.gap), tau, v, horizon, fineness)
+        return compiled_kernel()["flown"](*self[:3], (self.clearance, self.gap), tau, v, horizon, fineness)
 
 
 class Hit(NamedTuple):

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from math import copysign, inf, isfinite, nan
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -258,13 +258,13 @@ class PlainOrbits:
         motion = self.at(v).motion
         p, c = motion.parameters, motion.clearance
 
-        def slopes(s: float, y: Any) -> Any:
+        def slopes(s: float, y: Array) -> list[float]:
             return [y[1], motion.acceleration(tau + s, c + y[0], y[1], p)]
 
-        def height(_s: float, y: Any) -> float:
+        def height(_s: float, y: Array) -> float:
             return float(y[0])
 
-        def depth(_s: float, y: Any) -> float:
+        def depth(_s: float, y: Array) -> float:
             return float(y[0]) - motion.gap
 
         height.terminal, height.direction = True, -1.0  # type: ignore[attr-defined]

@@ -115,8 +115,7 @@ class _Texts:
         return _Text(repr(math.pi))
 
     def power(self, base: _Text, exponent: Fraction) -> _Text:
-        whole = exponent.denominator == 1
-        return _Text(f"({base.text}) ** {exponent if whole else float(exponent)}")
+        return _Text(f"({base.text}) ** {exponent if exponent.denominator == 1 else float(exponent)}")
 
     def call(self, function: str, argument: _Text) -> _Text:
         return _Text(f"{function}({argument.text})")

@@ -274,8 +274,7 @@ def _share(points: Array, tau: float) -> float:
 
 def _orbit(model: Any, curve: Array, start: float, share: float) -> Array:
     """Impacts of an orbit that starts above gamma by a share of its height, while they come close together."""
-    order = np.argsort(curve[:, 0])
-    state = np.array([[start, (1 + share) * float(np.interp(start, *curve[order].T))]])
+    state = np.array([[start, (1 + share) * float(np.interp(start, *curve[np.argsort(curve[:, 0])].T))]])
     states = [state[0]]
     for _ in range(12):
         state = model_step(model, state)

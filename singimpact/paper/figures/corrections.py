@@ -10,8 +10,9 @@ from singimpact.dynamics.orbit import orbit
 from singimpact.dynamics.unfolded_swan import swan_configuration
 from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.oscillator.wall_acceleration import acceleration
+from singimpact.paper.claims.beyond import holder
 from singimpact.paper.figures.panel import Dot, Line, Panel, Picture, picture_of
-from singimpact.paper.trials import first_order_feet, orbits_beside_gamma
+from singimpact.paper.trials import first_order_feet
 
 DAMPING, CLEARANCE = 0.4, 0.9
 WINDOW = -0.45, 1.0  # of t in figure B1; pi/omega_d is 3.2
@@ -38,9 +39,7 @@ def in_new_time(t: Array) -> tuple[Array, Array]:
 
 def gravity(t: Array) -> Array:
     """A(s) at the s of t."""
-    omega = _frequency()
-    growth = np.exp(DAMPING / 2 * t) * np.cos(omega * t) ** 3
-    return np.asarray(growth * acceleration(damped(), t))
+    return np.asarray(np.exp(DAMPING / 2 * t) * np.cos(_frequency() * t) ** 3 * acceleration(damped(), t))
 
 
 def figure_B1() -> Picture:
@@ -163,15 +162,15 @@ def figure_B3() -> Picture:
             Line(curve, pen, f"j = {order}", f"$j = {order}$", NAMED[order], words=f"contact order $j = {order}$")
         )
         facts[f"alpha at r = 1, j = {order}"] = float(curve[-1, 1])
-    for start in orbits_beside_gamma.STARTS:
-        for rate in orbits_beside_gamma.RATES:
-            orbits = orbits_beside_gamma.beside(start, rate)
+    for start in holder.STARTS:
+        for rate in holder.RATES:
+            orbits = holder.beside(start, rate)
             mark = np.array([[_value(rate), orbits.slope]])
             lines.append(Line(mark, "crossing", "true orbit", beads=True, words="slopes of true orbits"))
             facts[f"{start.name}, r = {rate}"] = orbits.slope - log(1 / orbits.lambda_) / log(orbits.mu)
     return picture_of(
         "B3",
-        "; ".join(start.name for start in orbits_beside_gamma.STARTS),
+        "; ".join(start.name for start in holder.STARTS),
         [Panel(((0.0, 1.0), (0.1, 1.05)), "$r$", r"$\alpha$", lines=lines)],
         facts,
     )

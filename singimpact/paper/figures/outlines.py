@@ -262,14 +262,14 @@ def figure_10() -> Picture:
                 "$v$" if n % 4 == 0 else "",
                 (f"$\\sigma = {point:.3g}$" if letter is None else f"$\\sigma = {point:.3g}$, ${letter}$"),
                 lines,
-                dots=([] if letter is None else [Dot(f"${letter}$", _on(letter))]),
+                dots=(
+                    []
+                    if letter is None
+                    else [Dot(f"${letter}$", (positive().points[letter][1], positive().projected[letter][1]))]
+                ),
             )
         )
     return picture_of(10, str(swan.model), panels)
-
-
-def _on(letter: str) -> tuple[float, float]:
-    return positive().points[letter][1], positive().projected[letter][1]
 
 
 def _visible(tau: float, curve: Array) -> list[Array]:

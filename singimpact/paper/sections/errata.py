@@ -274,18 +274,17 @@ class Errata(Sequence[Erratum]):
     def _filled(self, form: str, legend: Sequence[str] = ()) -> str:
         """The template of a format, which stands beside this file, with the errata put in."""
         template = Path(__file__).with_name(f"errata.{form}.j2").read_text(encoding="utf-8")
-        functions = {"places": _places, "in_letters": in_letters, "wrapping": wrapping}
+        functions: dict[str, Any] = {
+            "places": lambda group: "; ".join(dict.fromkeys(str(entry.place) for entry in group)),
+            "in_letters": in_letters,
+            "wrapping": wrapping,
+        }
         fields = {"errata": self, "paper": PAPER, "version": VERSION, "grades": GRADES, "legend": legend}
         return str(environment().from_string(template).render(fields | functions))
 
     def as_dict(self) -> dict[str, Any]:
         """The errata as plain data; ``singimpact errata --json`` prints it."""
         return {"paper": PAPER, "version": VERSION, "grades": GRADES, "errata": [entry.as_dict() for entry in self]}
-
-
-def _places(group: Sequence[Erratum]) -> str:
-    """The places of a remark, each once."""
-    return "; ".join(dict.fromkeys(str(entry.place) for entry in group))
 
 
 @checked_keywords

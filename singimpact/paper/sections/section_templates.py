@@ -97,8 +97,7 @@ def _filled(template: str, formulas: Mapping[str, object]) -> str:
 @cache
 def _layouts() -> dict[str, Callable[..., object]]:
     """The ways to lay out a formula that a template may name; they load sympy, which words alone do without."""
-    from singimpact.documents.arranging import by_degree, factored, in_powers
-    from singimpact.theory.notation import joined, latex
+    from singimpact.theory.notation import by_degree, factored, in_powers, joined, latex
 
     layouts: tuple[Callable[..., object], ...] = (by_degree, factored, in_powers, joined, latex, rows)
     return {layout.__name__: layout for layout in layouts}

@@ -138,8 +138,7 @@ def hop(lift: Model, rate: str, depth: int) -> Hop:
     hits = run.tau[start + 1 :]
     v = float(run.v[start + 1])
     completed = float(run.tau[start + 1 :][run.kind[start + 1 :] == "complete"][0])
-    path = run.sample(np.linspace(A, float(hits[0]), FINE))
-    top = float(np.max(path.x)) - as_float(osc.clearance)
+    top = float(np.max(run.sample(np.linspace(A, float(hits[0]), FINE)).x)) - as_float(osc.clearance)
     runs = [orbit(osc, share * period, speed, 400) for share, speed in FROM]
     return Hop(
         half=half,

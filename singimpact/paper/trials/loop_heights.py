@@ -35,12 +35,7 @@ Swan = System  # with an unfolded negative swan near t = 0
 SWANS = (
     Swan("x'' = 12(1 - t^2), c = 0", "0", "-12*(t**2 - 1)", "0"),
     Swan("x'' + x = cos 2t, c = 19/20", "x", "cos(2*t)", "0.95"),
-    Swan(
-        "x'' + x'/10 + x + 3x^3/10 = (13/10) cos 2t, c = 19/20",
-        "x + 0.1*xdot + 0.3*x**3",
-        "1.3*cos(2*t)",
-        "0.95",
-    ),
+    Swan("x'' + x'/10 + x + 3x^3/10 = (13/10) cos 2t, c = 19/20", "x + 0.1*xdot + 0.3*x**3", "1.3*cos(2*t)", "0.95"),
 )
 
 

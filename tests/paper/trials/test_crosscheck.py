@@ -4,7 +4,7 @@ import pytest
 
 from singimpact.contact import Contact
 from singimpact.paper import gamma_cases, scipy_flow, sides
-from singimpact.paper.trials import crosscheck
+from singimpact.paper.trials import true_sheet
 from singimpact.theory import Sheet, sheet
 
 CASES = [(0, 3), (0, 4), (1, 2), (1, 3), (1, 5), (2, 3), (2, 4)]
@@ -12,24 +12,24 @@ CASES = [(0, 3), (0, 4), (1, 2), (1, 3), (1, 5), (2, 3), (2, 4)]
 
 @pytest.mark.parametrize(("j", "order"), CASES)
 def test_remainder_has_the_degree_of_the_first_omitted_term(j, order):
-    for case in crosscheck.remainders(j, order):
+    for case in true_sheet.remainders(j, order):
         assert case.agrees, case.line()
 
 
 def test_parity_raises_the_degree():
     """At the swan of the linear oscillator the terms of degree 4 vanish exactly."""
-    expected = {case.name: case.expected for case in crosscheck.remainders(2, 3) if case.quantity == "v_c"}
+    expected = {case.name: case.expected for case in true_sheet.remainders(2, 3) if case.quantity == "v_c"}
     assert expected["linear, omega 2, DOP853"] == 5
     assert expected["damped Duffing, omega 1.7, DOP853"] == 4
 
 
 def test_a_wrong_term_shows():
-    place = crosscheck.setting("linear, omega 2", 1)
-    right = sheet(Contact.of(place.model, place.tau, 1, 3, crosscheck.DOUBLES), 3)
+    place = true_sheet.setting("linear, omega 2", 1)
+    right = sheet(Contact.of(place.model, place.tau, 1, 3, true_sheet.DOUBLES), 3)
     wrong = Sheet(right.contact, 3, right.v.scaled(1.01))
     flow = scipy_flow(place.model, float(place.tau))
-    assert crosscheck.measured(right, flow, "v_c", list(crosscheck.STEPS)) > 3.8
-    assert crosscheck.measured(wrong, flow, "v_c", list(crosscheck.STEPS)) < 2.2
+    assert true_sheet.measured(right, flow, "v_c", list(true_sheet.REMAINDER_STEPS)) > 3.8
+    assert true_sheet.measured(wrong, flow, "v_c", list(true_sheet.REMAINDER_STEPS)) < 2.2
 
 
 @pytest.mark.parametrize("j", [1, 2])

@@ -7,8 +7,7 @@ import sympy
 from hypothesis import given, settings, strategies as st
 
 from singimpact import theory
-from singimpact.documents import by_degree, factored, in_powers
-from singimpact.theory import latex
+from singimpact.theory import by_degree, factored, in_powers, latex
 
 a, a1, a2, b, k, r, m, lam, sigma, eta, t = sympy.symbols("a a_d1 a_d2 b k r m lambda sigma eta t")
 Q = sympy.Symbol("Q")

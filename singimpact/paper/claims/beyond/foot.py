@@ -25,8 +25,7 @@ NEAR_ONE = tuple(Fraction(value) for value in ("0.9", "0.95", "0.99", "0.995"))
 def _velocities() -> tuple[sympy.Expr, sympy.Expr]:
     """Launch and landing speed over t |kappa|, as polynomials in (sigma, t)."""
     launch = sympy.expand(sympy.cancel(model.launch_velocity() / (-kappa * t)))
-    landing = sympy.expand(sympy.cancel(model.impact_velocity() / (kappa * t)))
-    return launch, landing
+    return launch, sympy.expand(sympy.cancel(model.impact_velocity() / (kappa * t)))
 
 
 def _rises(stated: tuple[int, int, int]) -> Check:
@@ -142,7 +141,7 @@ def _limit(stated: tuple[sympy.Expr, str, str]) -> Check:
     third, length = _short_flights()
     derived, limit = _used_up(), elastic()
     u_low, u_high = limit.invariant
-    ends = [_decimal(derived.subs(w, sympy.Rational(bound.numerator, bound.denominator))) for bound in (u_low, u_high)]
+    ends = [Fraction(str(sympy.N(derived.subs(w, sympy.Rational(bound)), 30))) for bound in (u_low, u_high)]
     equal = sympy.expand(formula**7 - derived**7) == 0
     above = [[scaled(bound, rate, SEVENTHS) for bound in foot(rate, CLOSE)] for rate in NEAR_ONE]
     nearer = all(low > high for (low, _), (_, high) in itertools.pairwise(above))
@@ -153,10 +152,7 @@ def _limit(stated: tuple[sympy.Expr, str, str]) -> Check:
                 f"so it has a limit u: {float(u_low):.9f} < u < {float(u_high):.9f} after {limit.impacts} flights",
                 _rounds((u_low, u_high), invariant),
             ),
-            (
-                "a short flight takes t = 2v/|a| and an impact takes (1-r) u: du/dsigma = -(1-r) |a|^(2/3)/2",
-                length,
-            ),
+            ("a short flight takes t = 2v/|a| and an impact takes (1-r) u: du/dsigma = -(1-r) |a|^(2/3)/2", length),
             (f"u is used up at X (1-r)^(3/7) -> {derived}, u = {w}", equal),
             (f"which lies between {float(ends[0]):.8f} and {float(ends[1]):.8f}", _rounds(tuple(ends), value)),
             (
@@ -168,11 +164,6 @@ def _limit(stated: tuple[sympy.Expr, str, str]) -> Check:
         "supported",
         witness=lambda: sample(formula, derived) if not equal else {"u": f"{float(u_low):.9f}", "limit": str(ends[0])},
     )
-
-
-def _decimal(value: sympy.Expr) -> Fraction:
-    """A real number of sympy to 30 digits."""
-    return Fraction(str(sympy.N(value, 30)))
 
 
 def _rounds(ends: tuple[Fraction, ...], text: str) -> bool:

@@ -15,7 +15,7 @@ from singimpact.paper.claims.sections.section4_trials import TRIALS as TRIALS
 from singimpact.paper.claims.verifiers import every, identity, is_zero, root_of_line, same
 from singimpact.paper.routes import fold, implicit as route
 from singimpact.paper.routes.implicit import X, Y, a_symbol, f_symbol, sigma, t, v
-from singimpact.paper.trials import crosscheck
+from singimpact.paper.trials import true_sheet
 from singimpact.theory.impact_sheet import generic_sheet
 from singimpact.theory.notation import latex
 
@@ -52,8 +52,7 @@ def _vtaylor(where: tuple[tuple[int, int], ...], printed: Any, mutants: tuple[An
 
 
 def _monomial(i: int, j: int) -> str:
-    head = {0: "", 1: r"\sigma "}.get(i, rf"\sigma^{i} ")
-    return head + ("t" if j == 1 else f"t^{j}")
+    return {0: "", 1: r"\sigma "}.get(i, rf"\sigma^{i} ") + ("t" if j == 1 else f"t^{j}")
 
 
 def _linear_model(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
@@ -141,7 +140,7 @@ def _leading(j: int, order: int) -> Any:
     exact = identity(lambda: _sheet(j, order), "the solution of the boundary value problem with the zeros set first")
 
     def trial() -> tuple[str, bool]:
-        slopes = crosscheck.remainders(j, order)
+        slopes = true_sheet.remainders(j, order)
         lines = "; ".join(case.line() for case in slopes)
         return f"remainder on true orbits: {lines}", all(case.agrees for case in slopes)
 
