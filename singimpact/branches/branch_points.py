@@ -128,7 +128,7 @@ class BranchPointSettings:
     beside: tuple[float, ...] = (1e-1, 1e-2, 1e-3)
     # secants for the doubling of the orbits of half as many impacts, and their tolerance in scaled unknowns
     secants: int = 30
-    arrived: float = 1e-14
+    arrived: float = 1e-12
     # halves of an orbit that differ by less, in scaled unknowns, are equal
     equal: float = 1e-7
     # slope of the parameter along the other branch, in scaled unknowns, below which it turns back: the step is 1e-3

@@ -1,5 +1,6 @@
 """`singimpact basins`: the attractor of each state of a grid."""
 
+from contextlib import nullcontext
 from typing import Any
 
 import click
@@ -20,6 +21,9 @@ LAYERS = ("for-ever", "first-chatter")
 @click.option("--xdot", nargs=2, metavar="LOW HIGH", help="The same of x'.  [default: -2 2]")
 @whole_option("--size", 2, 10_000, "States a side.", 600)
 @whole_option("--impacts", 1, 10**7, "Of an orbit that does not settle.", 20_000)
+@click.option("--over", nargs=3, metavar="NUMBER LOW HIGH", help="Shares of the basins over a number of the model.")
+@whole_option("--values", 2, 100_000, "Of that number.", 50)
+@whole_option("--states", 1, 1_000_000, "Drawn at each of its values.", 400)
 @whole_option("--workers", 1, 1024, "Processes.  [default: threads, one for each core]")
 @choice_option("--layer", LAYERS, "Draw the attractors, or the states whose first chatter completes.", LAYERS[0])
 @click.option("--keep", metavar="FILE", help="Store results in this file (.npz or .zarr), and resume from it.")
@@ -38,7 +42,7 @@ def command(
 
     An (n, k) orbit has n impacts in k periods of the forcing. A model without t has a grid of starts off the wall.
     """
-    keep, wall = options.pop("keep"), options.pop("wall")
+    keep, wall, over, values, states = (options.pop(name) for name in ("keep", "wall", "over", "values", "states"))
     ends = {name: options.pop(name) for name in ("tau", "v", "x", "xdot")}
     model = take_model(options)
     axes = ("x", "xdot") if model.autonomous else ("tau", "v")
@@ -47,9 +51,22 @@ def command(
             raise refuse(f"--{name}", " ".join(value), f"--{axes[0]} and --{axes[1]} for this model")
     tau, v = (ends[name] for name in axes)
 
-    def make() -> tuple[Any, Any]:
-        from contextlib import nullcontext
+    if over is not None:
+        from singimpact.case_pools import WorkerPool
+        from singimpact.dynamics.basins_over import basins_over
+        from singimpact.scenes import plot
 
+        how = {"states": states, "output": keep}
+        with nullcontext() if workers is None else WorkerPool(workers) as pool:
+            shares = basins_over(model, over[0], over[1:], (tau, v), values, impacts, wall, executor=pool, **how)
+        save(plot(shares).figure, output)
+        told, lines = shares.as_dict(), zip(shares.values.tolist(), shares.share.tolist(), strict=True)
+        rows = [[f"{at:.6g}", *(f"{share:.4f}" for share in line)] for at, line in lines]
+        text = columns([shares.over, *told["attractor"]], rows)
+        give({"model": model.to_dict(), "output": output} | told, text, as_json)
+        return
+
+    def make() -> tuple[Any, Any]:
         from singimpact.case_pools import WorkerPool
         from singimpact.dynamics.basins_of_attraction import basins
         from singimpact.scenes.basins_picture import draw_basins, draw_first_chatter

@@ -18,7 +18,7 @@ _FILES = {
     "claims.engine": "imported_by keep key_of recall",
     "claims.index": "COLOURS as_svg claims_in colour_of",
     "claims.next_sigma": "next_sigma",
-    "claims.sections.section6_scaling": "crossing near_the_swan nonzero scaling_check",
+    "claims.sections.section6_exact": "crossing near_the_swan nonzero scaling_check",
     "claims.verdicts": "VerdictTable verify",
     "claims.verifiers": "every sample",
     "figures": "FIGURES picture",

@@ -24,11 +24,10 @@ if TYPE_CHECKING:
 
 
 _FILES = {
-    "completion": "leaves symbolic_completion",
+    "completion": "leaves rho_names symbolic_completion symbolic_curve",
     "contact_points": "multiplier",
     "fixed_points": "as_dict swan tangency",
     "frozen": "CURVED MOVED PLACES completion_module curve_functions sheet_functions",
-    "gamma_in_symbols": "rho_names symbolic_curve",
     "gamma_series": "invariant_curve multiplier_across restitution_of",
     "grazing": "grazing_map",
     "impact_sheet": "Sheet generic_sheet iota sheet",

@@ -20,10 +20,8 @@ from singimpact.handed_on import sympy
 from singimpact.inputs import InputError, checked_keywords, refuse, whole
 from singimpact.oscillator.model import require_smooth_rho
 from singimpact.oscillator.rho_series import TASK
-from singimpact.theory.completion import by_velocity, symbolic_completion
-from singimpact.theory.constants import LetteredModel
-from singimpact.theory.contact_points import Place, ending_gamma, exact_contact, multiplier, place
-from singimpact.theory.gamma_in_symbols import rho_names, symbolic_curve
+from singimpact.theory.completion import by_velocity, rho_names, symbolic_completion, symbolic_curve
+from singimpact.theory.contact_points import LetteredModel, Place, ending_gamma, exact_contact, multiplier, place
 from singimpact.theory.gamma_series import InvariantCurve, invariant_curve
 from singimpact.theory.impact_sheet import generic_sheet, sheet
 from singimpact.theory.power_series import TRUST, PowerSeries, all_certified, all_digits, sympy_digits, with_digits

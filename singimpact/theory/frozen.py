@@ -17,8 +17,7 @@ from singimpact.codegen.polynomial_source import (
 )
 from singimpact.contact.contact import NAMED_ORDERS, Contact, derivative_name
 from singimpact.germs import normal_form
-from singimpact.theory.completion import symbolic_completion
-from singimpact.theory.gamma_in_symbols import length_weight, symbolic_curve
+from singimpact.theory.completion import length_weight, symbolic_completion, symbolic_curve
 from singimpact.theory.impact_sheet import generic_sheet, sheet
 
 PLACES = ("generic", "tangency", "swan")

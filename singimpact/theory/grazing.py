@@ -31,8 +31,8 @@ from singimpact.handed_on import flint, sympy
 from singimpact.inputs import InputError, checked_keywords, refuse, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import sign_of_acceleration
+from singimpact.theory.completion import in_length, length_weight, rho_names
 from singimpact.theory.contact_points import Place, place
-from singimpact.theory.gamma_in_symbols import in_length, length_weight, rho_names
 from singimpact.theory.power_series import PowerSeries, all_digits, with_digits
 
 PARTS = ("x", "xdot", "depth", "time")

@@ -21,8 +21,8 @@ from singimpact.algebra.rings import EXACT, SymbolRing
 from singimpact.contact.contact import Contact, contact_order, derivative_name
 from singimpact.germs import NormalForm, normal_form as reduced
 from singimpact.inputs import InputError, checked_keywords, refuse, whole
+from singimpact.theory.completion import length_weight
 from singimpact.theory.contact_points import exact_contact, place
-from singimpact.theory.gamma_in_symbols import length_weight
 from singimpact.theory.impact_sheet import Sheet, sheet
 from singimpact.theory.power_series import sympy_digits, with_digits
 

@@ -89,7 +89,7 @@ def test_a_bench_row(copy, clone):
     assert steps(clone, "a bench row") == ["singimpact/bench/groups/GROUP_rows.py"]
     put(
         copy,
-        "singimpact/bench/groups/chatter_rows.py",
+        "singimpact/bench/groups/impact_map_rows.py",
         'states_case("duffing", 0.7, 1, effort)',
         'states_case("duffing", 0.9, 1, effort)',
     )
@@ -131,7 +131,7 @@ print([(event.kind, round(float(event.orbit.v[0]), 9)) for event in branch.event
 
 
 def test_an_event(copy, clone):
-    table = "singimpact/branches/events/table.py"
+    table = "singimpact/branches/events/event.py"
     assert steps(clone, "an event")[:2] == ["singimpact/branches/events/NAME.py", table]
     (copy / "singimpact/branches/events/toy.py").write_text(TOY_EVENT)
     text = (copy / table).read_text(encoding="utf-8")

@@ -32,8 +32,8 @@ SERIES = (
     ("gamma, cubic model, doubles", 20, f"invariant_curve({DOUBLES}, 0.6, {{n}})", "", 0.01),
     ("v_c, generic jets", 8, "sheet(Contact.generic(0, {n}), {n}).xdot", "", 0.05),
     ("v_c, generic jets", 12, "sheet(Contact.generic(0, {n}), {n}).xdot", "", 0.5),
-    ("v_c, parameters as letters", 12, LETTERED, "constants import LetteredModel", 0.05),
-    ("gamma, jets and r as symbols", 8, "symbolic_curve(1, {n})", "gamma_in_symbols import symbolic_curve", 3.0),
+    ("v_c, parameters as letters", 12, LETTERED, "contact_points import LetteredModel", 0.05),
+    ("gamma, jets and r as symbols", 8, "symbolic_curve(1, {n})", "completion import symbolic_curve", 3.0),
     ("end of chatter in symbols", 6, "symbolic_completion({n})", "completion import symbolic_completion", 0.3),
 )
 """Series that may not grow slower: what they are, the order, the call, an import from `singimpact.theory`."""

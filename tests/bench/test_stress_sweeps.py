@@ -46,6 +46,7 @@ NO_NUMBER |= {
     "manifold",
     "homoclinic_points",
     "border_orbits",
+    "cascade",
     "animate",
     "explore",
     "figure",

@@ -2,16 +2,16 @@
 
 from collections.abc import Callable, Iterator
 
-from singimpact.bench.groups import chatter_rows, limit_rows, many_rows, public_rows, series_rows
+from singimpact.bench.groups import impact_map_rows, limit_rows, public_rows, series_rows
 from singimpact.bench.measuring import Case, Effort, Measured, measure
 
 GROUPS: dict[str, Callable[[Effort], Iterator[Case]]] = {
     "public": public_rows.cases,
-    "chatter": chatter_rows.cases,
+    "chatter": impact_map_rows.chatter,
     "series": series_rows.cases,
-    "regions": many_rows.regions,
-    "ensemble": many_rows.ensemble,
-    "fit": many_rows.fit,
+    "regions": public_rows.regions,
+    "ensemble": public_rows.ensemble,
+    "fit": public_rows.fit,
     "limit": limit_rows.cases,
 }
 

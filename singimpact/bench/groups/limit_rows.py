@@ -18,7 +18,7 @@ import singimpact as si
 from singimpact.algebra.numbers import Array
 from singimpact.bench.drawn import CHATTERING, CLEARANCES, OMEGAS, Draws, States
 from singimpact.bench.fresh import cost
-from singimpact.bench.groups.many_rows import BALL, PLACES, family_of, one_by_one, square
+from singimpact.bench.groups.public_rows import BALL, PLACES, family_of, one_by_one, square
 from singimpact.bench.measuring import Aim, Case, Effort, Method, Row, Timed
 from singimpact.branches.events import PERIOD_DOUBLING
 

@@ -1,22 +1,136 @@
 """Impacts, chatter, rest and lift-off of any model by fixed steps: what orbits of the package are compared with.
 
+First hits are those of `graded_steps`, of the acceleration as a plain compiled function; the layers of a model are not
+known here, so the steps are graded by the rate of the motion alone.
+
 Shared with the package: f, g and rho as expression trees, and the period. Not shared: their evaluation, flights, laws
 of rebound, sums of chatter, zeros of a_c.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property, lru_cache
 from math import copysign, inf, isfinite, nan
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from singimpact.algebra.expressions import Expression, evaluate, names_in, subtract
 from singimpact.algebra.numbers import Array, as_float
-from singimpact.bench.truth import graded_steps, plain_steps
-from singimpact.bench.truth.graded_steps import HIT, MISS, UNDECIDED, Motion
+from singimpact.bench.truth import graded_steps
+from singimpact.bench.truth.graded_steps import EVERYWHERE, HIT, MISS, UNDECIDED, Motion
 from singimpact.oscillator.model import Oscillator
+
+FUNCTIONS = ("sin", "cos", "tan", "exp", "log", "sqrt", "atan", "tanh", "log1p")
+
+
+@lru_cache(maxsize=8)
+def motion(osc: Oscillator, rate: float, above: bool = False) -> Motion:
+    """The model as `graded_steps.first_hit` flies it.
+
+    Parameters
+    ----------
+    rate : 1/time; a step is at most fineness/rate. above : from the upper wall, in -x.
+
+    Raises
+    ------
+    TypeError : f or g holds an algebraic number that is given as a root.
+
+    Examples
+    --------
+    >>> falling = motion(Oscillator("0", "-2", 0, "1/2"), 1.0)
+    >>> round(graded_steps.first_hit(falling, 0.0, 3.0, 30.0).flight_time, 12)
+    3.0
+    """
+    gap = inf if osc.upper is None else as_float(subtract(osc.upper, osc.clearance))
+    wall = -as_float(osc.upper) if above and osc.upper is not None else as_float(osc.clearance)
+    layers = np.array([[EVERYWHERE, 0.0, 1 / rate, 0.0, 0.0]])
+    acceleration = python_function("acceleration", text(osc, above))
+    return Motion(graded_steps.compiled(acceleration), np.zeros(1), layers, wall, gap)
+
+
+def text(osc: Oscillator, above: bool = False) -> str:
+    """The source of g - f in doubles; or with `above` that of (-x)''.
+
+    Examples
+    --------
+    >>> print(text(Oscillator("x/2", "1", 0, "1/2")), end="")
+    def acceleration(t, x, xdot, p):
+        return 1.0 - ((0.5) * (x))
+    """
+    f, g = source(osc.force()), source(osc.forcing())
+    # from the upper wall x and x' change their signs, and so does the acceleration
+    turned, result = ("    x, xdot = -x, -xdot\n", f"{f} - ({g})") if above else ("", f"{g} - ({f})")
+    return f"def acceleration(t, x, xdot, p):\n{turned}    return {result}\n"
+
+
+def rebound(osc: Oscillator) -> Callable[[float], float]:
+    """rho of the lower wall as a plain Python function of the velocity before the impact.
+
+    Examples
+    --------
+    >>> rebound(Oscillator("x", "cos(t)", 0, "-v/2"))(-0.75)
+    0.375
+    """
+    return python_function("rho", f"def rho(v):\n    return {source(osc.rho())}\n")
+
+
+def python_function(name: str, text: str) -> Callable[..., float]:
+    """The function that a Python text defines; the names of `FUNCTIONS` in it are those of `math`."""
+    space: dict[str, Any] = {function: getattr(math, function) for function in FUNCTIONS}
+    exec(compile(text, f"<{name}>", "exec"), space)
+    return space[name]  # type: ignore[no-any-return]
+
+
+def source(tree: Expression) -> str:
+    """The Python text of an expression in doubles, with the functions of `math`.
+
+    Examples
+    --------
+    >>> from singimpact.algebra.parsing import parse
+    >>> source(parse("x**(-1/2) + tanh(2*x)/3", ["x"]))
+    '(x) ** -0.5 + (0.3333333333333333) * (tanh((2.0) * (x)))'
+    """
+    written: str = evaluate(tree, {name: _Text(name) for name in names_in(tree)}, _Texts()).text
+    return written
+
+
+@dataclass(frozen=True)
+class _Text:
+    """A sum as Python text; its terms need no brackets."""
+
+    text: str
+
+    def __add__(self, other: "_Text") -> "_Text":
+        return _Text(f"{self.text} + {other.text}")
+
+    def __mul__(self, other: "_Text") -> "_Text":
+        return _Text(f"({self.text}) * ({other.text})")
+
+
+class _Texts:
+    """The ring of such texts."""
+
+    def rational(self, value: Fraction) -> _Text:
+        return _Text(repr(float(value)))
+
+    def pi(self) -> _Text:
+        return _Text(repr(math.pi))
+
+    def power(self, base: _Text, exponent: Fraction) -> _Text:
+        return _Text(f"({base.text}) ** {exponent if exponent.denominator == 1 else float(exponent)}")
+
+    def call(self, function: str, argument: _Text) -> _Text:
+        return _Text(f"{function}({argument.text})")
+
+    def root(self, tree: Expression) -> _Text:
+        raise TypeError(f"the root {tree} has no text in doubles")
+
+
+# Orbits of such flights.
 
 
 @dataclass(frozen=True)
@@ -255,17 +369,17 @@ class PlainOrbits:
 
     def lifted(self, tau: float, horizon: float | None = None, v: float = 0.0) -> Impact:
         """The first impact of a mass that lifts off from rest, by scipy's DOP853 with dense output; v is +-0.0."""
-        motion = self.at(v).motion
-        p, c = motion.parameters, motion.clearance
+        model = self.at(v).motion
+        p, c = model.parameters, model.clearance
 
         def slopes(s: float, y: Array) -> list[float]:
-            return [y[1], motion.acceleration(tau + s, c + y[0], y[1], p)]
+            return [y[1], model.acceleration(tau + s, c + y[0], y[1], p)]
 
         def height(_s: float, y: Array) -> float:
             return float(y[0])
 
         def depth(_s: float, y: Array) -> float:
-            return float(y[0]) - motion.gap
+            return float(y[0]) - model.gap
 
         height.terminal, height.direction = True, -1.0  # type: ignore[attr-defined]
         depth.terminal = True  # type: ignore[attr-defined]
@@ -309,9 +423,9 @@ def plain_orbits(osc: Oscillator, rate: float, horizon: float, fast: float, abov
     >>> end.status, round(end.time, 12), round(ball.impact(0.0, 3.0).v, 12)
     ('complete', 2.0, 1.5)
     """
-    rho = plain_steps.rebound(osc.mirrored if above else osc)
+    rho = rebound(osc.mirrored if above else osc)
     slopes = [rho(-slow) / slow for slow in (SETTINGS.slow * fast, 1e-3 * SETTINGS.slow * fast)]
     smooth = abs(slopes[1] - slopes[0]) <= 1e-6 * slopes[0] and slopes[0] < 1 - 1e-6
-    motion = plain_steps.motion(osc, rate, above)
     second = plain_orbits(osc, rate, horizon, fast, True) if osc.upper is not None and not above else None
-    return PlainOrbits(motion, rho, slopes[1] if smooth else nan, as_float(osc.period), rate, horizon, second)
+    slope, period = slopes[1] if smooth else nan, as_float(osc.period)
+    return PlainOrbits(motion(osc, rate, above), rho, slope, period, rate, horizon, second)

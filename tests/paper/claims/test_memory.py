@@ -68,7 +68,7 @@ def test_edited_file_runs_the_claims_of_the_files_that_take_it(decided, edited):
     claims = select(["e:meq", "s5-phi", "s6p-AB"])
     run(claims, cached=True)
     decided.clear()
-    edited("section6_scaling")
+    edited("section6_exact")
     run(claims, cached=True)
     assert decided == [claim.id for claim in claims if claim.file.startswith("section6")]
 
@@ -90,7 +90,7 @@ def test_imports_within_the_sections_are_all_in_the_key(file):
     assert direct or file in (
         "section2_trials",
         "section4_orbits",
-        "section6_scaling",
+        "section6_exact",
     )
 
 

@@ -4,6 +4,7 @@ import json
 
 import pytest
 
+import singimpact as si
 from singimpact.cli import main
 
 SCENE = """
@@ -84,6 +85,27 @@ def test_basins_and_bifurcation(capsys, tmp_path):
                      "-o", tmp_path / "c.png")  # fmt: skip
     assert code == 0
     assert (tmp_path / "c.png").exists()
+
+
+def test_basins_over_a_number_are_shares(capsys, tmp_path):
+    model = ["--omega", "2.8", "--clearance", "0.1", "--restitution", "0.8", "--amplitude", -1]
+    words = ["basins", *model, "--over", "clearance", "0.05", "0.15", "--values", 3, "--states", 40, "--impacts", 2000]
+    code, out, _ = run(capsys, *words, "-o", tmp_path / "o.png", "--json")
+    assert code == 0
+    told = json.loads(out)
+    osc = si.linear("2.8", "0.1", "0.8", amplitude=-1)
+    shares = si.basins(osc, over="clearance", between=("0.05", "0.15"), values=3, states=40, impacts=2000)
+    assert told["share"] == shares.share.tolist()
+    assert told["attractor"] == [name for _, name, _ in sorted(shares.classes)]
+    assert (tmp_path / "o.png").stat().st_size > 1000
+    code, out, _ = run(capsys, *words, "-o", tmp_path / "o.png")
+    assert code == 0
+    assert out.split()[0] == "clearance"
+    assert f"{shares.share[2, 0]:.4f}" in out.splitlines()[-1]
+    code, _, error = run(capsys, "basins", *model, "--over", "nothing", 0, 1, "-o", tmp_path / "n.png")
+    assert code == 2
+    assert "unknown number of the model 'nothing'" in error
+    assert not (tmp_path / "n.png").exists()
 
 
 def test_one_figure_as_a_file_of_its_own(capsys, tmp_path):

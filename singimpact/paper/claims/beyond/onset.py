@@ -7,7 +7,7 @@ import sympy
 from singimpact.algebra.certificates import positive_in
 from singimpact.algebra.derivations import At, substitution
 from singimpact.paper.claims.claim import Check, Encoding
-from singimpact.paper.claims.sections.section6_scaling import persisting
+from singimpact.paper.claims.sections.section6_exact import persisting
 from singimpact.paper.claims.verifiers import every, same
 from singimpact.paper.routes import unfolding as model
 from singimpact.paper.routes.unfolding import kappa, r, sigma, t, u

@@ -13,8 +13,14 @@ from singimpact.contact.swans import swan_points_over_clearance
 from singimpact.impact_oscillator import linear
 from singimpact.oscillator.model import Oscillator
 from singimpact.paper.claims.claim import Check, Encoding, Trial, Trials, at_each
-from singimpact.paper.claims.sections.section6_exact import epsilon_check
-from singimpact.paper.claims.sections.section6_scaling import at, crossing, persisting, regular_conic, scaling_check
+from singimpact.paper.claims.sections.section6_exact import (
+    at,
+    crossing,
+    epsilon_check,
+    persisting,
+    regular_conic,
+    scaling_check,
+)
 from singimpact.paper.claims.verifiers import every, is_zero, root_of_line, same
 from singimpact.paper.routes import unfolding as model
 from singimpact.paper.routes.implicit import v_c_swan

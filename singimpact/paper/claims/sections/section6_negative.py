@@ -9,11 +9,12 @@ from singimpact.paper.claims.claim import Check, Encoding
 from singimpact.paper.claims.sections.section6 import TRIALS as TRIALS
 from singimpact.paper.claims.sections.section6_exact import (
     ADCBA,
+    at,
     chatter_check,
     interval_check,
+    persisting,
     visible_check,
 )
-from singimpact.paper.claims.sections.section6_scaling import at, persisting
 from singimpact.paper.claims.verifiers import every, is_zero, root_of_line, same
 from singimpact.paper.routes import unfolding as model
 from singimpact.paper.routes.unfolding import kappa, sigma, t, u

@@ -8,8 +8,8 @@ import sympy
 from singimpact.algebra.derivations import At, substitution
 from singimpact.paper.claims.claim import Check, Encoding
 from singimpact.paper.claims.sections.section6 import TRIALS as TRIALS
+from singimpact.paper.claims.sections.section6_exact import crossing, persisting
 from singimpact.paper.claims.sections.section6_negative import cusp_above
-from singimpact.paper.claims.sections.section6_scaling import crossing, persisting
 from singimpact.paper.claims.verifiers import every, is_zero, same
 from singimpact.paper.routes import unfolding as model
 from singimpact.paper.routes.unfolding import kappa, sigma, t
