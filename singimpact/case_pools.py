@@ -276,6 +276,11 @@ class ThreadPool(ThreadPoolExecutor):
         return None
 
 
+def processes(workers: int | None) -> AbstractContextManager[Any]:
+    """So many processes, or None where no number is given: threads of this process compute then."""
+    return nullcontext() if workers is None else WorkerPool(workers)
+
+
 class WorkerPool(ProcessPoolExecutor):
     """Processes that share no locks with this one and end with it. After an error they are ended at once.
 

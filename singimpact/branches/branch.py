@@ -9,8 +9,7 @@ import numpy as np
 from singimpact.algebra.numbers import Array, as_float, constant
 from singimpact.branches.branch_walk import BranchWalk
 from singimpact.branches.closing import Closing
-from singimpact.branches.events import KINDS, Event
-from singimpact.branches.events.event import own_events
+from singimpact.branches.events import KINDS, Event, own_events
 from singimpact.branches.orbit_curve import SETTINGS, places
 from singimpact.branches.orbits import OfImpacts, PeriodicOrbit
 from singimpact.branches.solutions import AnyClosing, closing_of, orbit_of, point_of

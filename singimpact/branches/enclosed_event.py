@@ -25,7 +25,7 @@ from singimpact.algebra.balls import BITS_A_DIGIT, Balls, as_rational
 from singimpact.algebra.certified import Certified, from_ball
 from singimpact.algebra.precision import balls_at
 from singimpact.branches.ball_closing import BallClosing, TouchingClosing, return_slope
-from singimpact.branches.events.event import kind_of
+from singimpact.branches.events.table import kind_of
 from singimpact.branches.krawczyk import KRAWCZYK, Krawczyk, Point
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.flights.enclosures.equation import Refused

@@ -1,12 +1,20 @@
 """`singimpact basins`: the attractor of each state of a grid."""
 
-from contextlib import nullcontext
 from typing import Any
 
 import click
 
 from singimpact.cli.model_options import model_options, take_model, wall_option
-from singimpact.cli.output import choice_option, columns, give, picture_option, save, save_once, whole_option
+from singimpact.cli.output import (
+    choice_option,
+    columns,
+    give,
+    picture_option,
+    refuse_given,
+    save,
+    save_once,
+    whole_option,
+)
 from singimpact.inputs import refuse
 
 LAYERS = ("for-ever", "first-chatter")
@@ -51,27 +59,30 @@ def command(
             raise refuse(f"--{name}", " ".join(value), f"--{axes[0]} and --{axes[1]} for this model")
     tau, v = (ends[name] for name in axes)
 
-    if over is not None:
-        from singimpact.case_pools import WorkerPool
+    if over is None:
+        refuse_given(("values", "states"), "--over beside it")
+    else:
+        refuse_given(("size", "layer"), "one of the two: --over has --values and --states")
+        from singimpact.case_pools import processes
         from singimpact.dynamics.basins_over import basins_over
         from singimpact.scenes import plot
 
         how = {"states": states, "output": keep}
-        with nullcontext() if workers is None else WorkerPool(workers) as pool:
+        with processes(workers) as pool:
             shares = basins_over(model, over[0], over[1:], (tau, v), values, impacts, wall, executor=pool, **how)
         save(plot(shares).figure, output)
-        told, lines = shares.as_dict(), zip(shares.values.tolist(), shares.share.tolist(), strict=True)
+        numbers, lines = shares.as_dict(), zip(shares.values.tolist(), shares.share.tolist(), strict=True)
         rows = [[f"{at:.6g}", *(f"{share:.4f}" for share in line)] for at, line in lines]
-        text = columns([shares.over, *told["attractor"]], rows)
-        give({"model": model.to_dict(), "output": output} | told, text, as_json)
+        text = columns([shares.over, *numbers["attractor"]], rows)
+        give({"model": model.to_dict(), "output": output} | numbers, text, as_json)
         return
 
     def make() -> tuple[Any, Any]:
-        from singimpact.case_pools import WorkerPool
+        from singimpact.case_pools import processes
         from singimpact.dynamics.basins_of_attraction import basins
         from singimpact.scenes.basins_picture import draw_basins, draw_first_chatter
 
-        with nullcontext() if workers is None else WorkerPool(workers) as pool:
+        with processes(workers) as pool:
             result = basins(model, tau, v, size, pool, keep, impacts, wall)
         draw = draw_basins if layer == LAYERS[0] else draw_first_chatter
         values = result.as_dict()

@@ -59,14 +59,12 @@ def command(
     --follow also the periodic orbits through the model's own value, stable and unstable ones.
     """
     model = take_model(options)
-    from contextlib import nullcontext
-
-    from singimpact.case_pools import WorkerPool
+    from singimpact.case_pools import processes
     from singimpact.dynamics.bifurcation_diagram import bifurcation
     from singimpact.scenes.branch_picture import bifurcation_sheet
 
     # in a direction each orbit begins where the one before ends: there is nothing to share out
-    with nullcontext() if workers is None or direction is not None else WorkerPool(workers) as pool:
+    with processes(workers if direction is None else None) as pool:
         settings: dict[str, Any] = {"start": start, "impacts": impacts, "kept": last_events, "direction": direction}
         diagram = bifurcation(model, over, (low, high), points, **settings, executor=pool, output=keep)
     branches = [

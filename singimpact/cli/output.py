@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import click
+from click.core import ParameterSource
 
 from singimpact import cache
 from singimpact.inputs import refuse
@@ -75,6 +76,14 @@ def _drawable(ctx: click.Context, option: click.Parameter, path: str | None) -> 
     if path is not None:
         suffix_of(path)
     return writable(ctx, option, path)
+
+
+def refuse_given(names: Sequence[str], accepted: str) -> None:
+    """Refuse options of the running command that nothing would read."""
+    context = click.get_current_context()
+    for name in names:
+        if context.get_parameter_source(name) == ParameterSource.COMMANDLINE:
+            raise refuse(f"--{name}", context.params[name], accepted)
 
 
 def emit(text: str, output: str | None) -> None:

@@ -31,16 +31,14 @@ def command(output: str, as_json: bool, **options: Any) -> None:
     names = ("over", "low", "high", "of", "size", "start", "impacts", "workers", "keep", "wall")
     over, low, high, of, size, start, impacts, workers, keep, wall = (options.pop(name) for name in names)
     model = take_model(options)
-    from contextlib import nullcontext
-
-    from singimpact.case_pools import WorkerPool
+    from singimpact.case_pools import processes
     from singimpact.dynamics.regions import OF, regions
     from singimpact.scenes.basins_picture import draw_regions
 
     if of not in OF:
         raise refuse("--of", of, ", ".join(OF))
     both = tuple(zip(low, high, strict=True))
-    with nullcontext() if workers is None else WorkerPool(workers) as pool:
+    with processes(workers) as pool:
         result = regions(model, over, both, of, size, (*start, wall), impacts, executor=pool, output=keep)
     save(draw_regions(result).figure, output)
     if result.values is not None:

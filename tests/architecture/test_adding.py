@@ -131,7 +131,7 @@ print([(event.kind, round(float(event.orbit.v[0]), 9)) for event in branch.event
 
 
 def test_an_event(copy, clone):
-    table = "singimpact/branches/events/event.py"
+    table = "singimpact/branches/events/table.py"
     assert steps(clone, "an event")[:2] == ["singimpact/branches/events/NAME.py", table]
     (copy / "singimpact/branches/events/toy.py").write_text(TOY_EVENT)
     text = (copy / table).read_text(encoding="utf-8")

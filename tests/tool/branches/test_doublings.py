@@ -52,7 +52,7 @@ def test_between_doublings_a_ball_repeats_after_twice_as_many_impacts(found):
         at = (doubling.parameter + following) / 2
         tau, v = float(doubling.orbit.tau[0]), float(doubling.orbit.v[0])
         assert period_of(at, tau, v) == n
-        # a wrong place by a fifth of the distance is told
+        # beyond the next doubling, by an eighth of the distance, it does not
         assert period_of(following + (following - doubling.parameter) / 8, tau, v) != n
 
 

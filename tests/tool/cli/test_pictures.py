@@ -108,6 +108,23 @@ def test_basins_over_a_number_are_shares(capsys, tmp_path):
     assert not (tmp_path / "n.png").exists()
 
 
+@pytest.mark.parametrize(
+    ("given", "named"),
+    [
+        (["--over", "clearance", 0, 1, "--size", 30], "--size = 30 is not accepted"),
+        (["--over", "clearance", 0, 1, "--layer", "first-chatter"], "--layer = 'first-chatter' is not accepted"),
+        (["--states", 10], "--states = 10 is not accepted: give --over beside it"),
+        (["--values", 10], "--values = 10 is not accepted: give --over beside it"),
+    ],
+)
+def test_basins_refuse_an_option_that_nothing_would_read(capsys, tmp_path, given, named):
+    model = ["--omega", "2.8", "--clearance", "0.1", "--restitution", "0.8"]
+    code, _, error = run(capsys, "basins", *model, *given, "-o", tmp_path / "n.png")
+    assert code == 2
+    assert named in error
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_one_figure_as_a_file_of_its_own(capsys, tmp_path):
     code, told, _ = run(capsys, "figure", "4", "-o", tmp_path / "cusp.svg")
     assert code == 0
