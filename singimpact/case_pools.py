@@ -276,7 +276,7 @@ class ThreadPool(ThreadPoolExecutor):
         return None
 
 
-def processes(workers: int | None) -> AbstractContextManager[Any]:
+def processes(workers: int | None) -> AbstractContextManager[ProcessPoolExecutor | None]:
     """So many processes, or None where no number is given: threads of this process compute then."""
     return nullcontext() if workers is None else WorkerPool(workers)
 

@@ -257,8 +257,11 @@ def _of_models(method: Callable[P, T], of_family: Callable[..., Any] | None = No
     def study(*values: P.args, **named: P.kwargs) -> T:
         bound = takes.bind(*values, **named)
         osc = bound.arguments["osc"]
-        if of_family is not None and hasattr(osc, "numbers"):
-            return of_family(*values, **named)  # type: ignore[no-any-return]
+        if of_family is not None and not isinstance(osc, Oscillator):
+            from singimpact.dynamics.families import OscillatorFamily
+
+            if isinstance(osc, OscillatorFamily):
+                return of_family(*values, **named)  # type: ignore[no-any-return]
         require_model("osc", osc)
         return method(*bound.args, **bound.kwargs)
 

@@ -56,7 +56,7 @@ EVENTS = tuple(kind.name for kind in KINDS if kind.is_class)
 @click.option("--between", type=(str, str), metavar="LOW HIGH", help="With gamma: for all restitutions of an interval.")
 @whole_option("--digits", 1, 1000, "Significant digits.", 30)
 @click.option("-o", "--output", metavar="FILE.json", help="The certificate.  [default: standard output]")
-def command(files: tuple[str, ...], tau: str | None, v: str | None, **options: Any) -> None:
+def certify_command(files: tuple[str, ...], tau: str | None, v: str | None, **options: Any) -> None:
     """Enclose the impact from (tau, v), its chatter limit, a periodic orbit, an event of its branch, a border orbit or
     a horseshoe, and write a certificate; or check FILE.json ...
 

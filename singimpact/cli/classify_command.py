@@ -39,7 +39,7 @@ SEEN = {None: "not decided", True: "yes", False: "no"}
 )
 @wall_option
 @output_options
-def command(
+def classify_command(
     window_tau: tuple[str, str] | None,
     window_t: tuple[str, str] | None,
     over: str | None,

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 @click.option("--html", metavar="FILE", help="Write the page to this file.  [default: open it in a browser]")
 @click.option("--json", "as_json", is_flag=True, help="Give the curves as JSON instead of a page.")
 @click.option("-o", "--output", metavar="FILE", help="The same as --html; with --json, the JSON file.")
-def command(
+def explore_command(
     path: str | None,
     between: tuple[str, str] | None,
     points: int,

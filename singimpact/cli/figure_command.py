@@ -32,7 +32,7 @@ DPI = 200  # of a PNG: figures are as small as they are printed
 @click.option("--dark", is_flag=True, help="Light lines on a dark ground.")
 @click.option("--data", is_flag=True, help="Write the curves as JSON beside each picture.")
 @click.option("--json", "as_json", is_flag=True, help="Print the written files and the CPU time in s as JSON.")
-def command(which: str, output: str, kind: str, serif: bool, dark: bool, data: bool, as_json: bool) -> None:
+def figure_command(which: str, output: str, kind: str, serif: bool, dark: bool, data: bool, as_json: bool) -> None:
     """Draw figure N of the paper, 1 to 17, or all, each computed from an oscillator, and list the claims that it shows.
 
     B1 to B9 are figures of what is beyond the paper; `beyond` draws them all.

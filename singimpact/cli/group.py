@@ -43,6 +43,14 @@ COMMANDS = {
     "fixed-points": "fixed points and multipliers, certified, to any digits",
     "cite": "references to cite",
 }
+# Commands that share a file; NAME is in NAME_command.py otherwise.
+FILES = {
+    **dict.fromkeys(("map", "orbit", "section", "chatter", "threshold", "lyapunov"), "orbit_commands"),
+    **dict.fromkeys(("sweep", "basins", "bifurcation", "regions", "ensemble"), "long_run_commands"),
+    **dict.fromkeys(("branch", "events", "border"), "branch_commands"),
+    **dict.fromkeys(("verify", "claims", "errata", "derive", "fixed-points", "cite"), "claim_commands"),
+    **dict.fromkeys(("bench", "stress", "selftest"), "measuring_commands"),
+}
 
 LINEAR = "--omega 2.8 --clearance 0.1 --restitution 0.8 --amplitude -1"
 DOOR = f"""\
@@ -63,7 +71,8 @@ class Commands(click.Group):
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command:  # noqa: ARG002
         if cmd_name not in COMMANDS:
             raise unknown("command", cmd_name, COMMANDS)
-        command: click.Command = import_module(f"singimpact.cli.{cmd_name.replace('-', '_')}_command").command
+        name = f"{cmd_name.replace('-', '_')}_command"
+        command: click.Command = getattr(import_module(f"singimpact.cli.{FILES.get(cmd_name, name)}"), name)
         return command
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002

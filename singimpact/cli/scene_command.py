@@ -11,7 +11,7 @@ from singimpact.cli.output import columns, give, picture_option, save
 @click.argument("file", metavar="FILE.toml")
 @picture_option(required=True)
 @click.option("--json", "as_json", is_flag=True, help="Print the report as JSON.")
-def command(file: str, output: str, as_json: bool) -> None:
+def scene_command(file: str, output: str, as_json: bool) -> None:
     """Draw a scene: a model, a window and layers, from a TOML file.
 
     Layers of the (tau, t)-plane: horizon, zero-set, visible, shadow, cut, beyond. Layers of the (tau, v)-plane:

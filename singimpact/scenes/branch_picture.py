@@ -22,11 +22,14 @@ from singimpact.scenes.style import (
     BLUE,
     DOTS,
     EVENT_PENS,
+    GREEN,
     GREY,
     LETTERS,
     LINES,
     OPEN,
     ORANGE,
+    PURPLE,
+    SKY,
     VERMILLION,
     orbit_color,
     orbit_width,
@@ -270,6 +273,7 @@ def _apart(points: list[tuple[float, float, str]], axes: Axes) -> list[tuple[flo
 # Bifurcation diagrams: velocities and phases of settled orbits, branches of periodic orbits over them.
 
 SIZE = (8.0, 6.4)  # inches
+ATTRACTORS = (BLUE, ORANGE, GREEN, PURPLE, SKY)  # colours of those met at most values
 SPREAD = 60_000.0  # impacts per square inch of area of their dots: few get large dots, many small ones
 
 
@@ -323,10 +327,9 @@ def draw_bifurcation(diagram: Bifurcation, axes: Any, height: str = "v") -> Any:
     size = float(np.clip(np.sqrt(SPREAD * inches / max(values.size, 1)) / 20, 0.9, 3.0))
     dots: dict[str, Any] = {"marker": "o", "linestyle": "none", "markeredgewidth": 0, "rasterized": True}
     large, dots = dots | {"markersize": 1.5 * size, "clip_on": False}, dots | {"markersize": size}
-    axes.plot(values[~resting], places[~resting], color=BLACK, label="impact", **dots)
-    if diagram.direction == "both":
-        down = (np.arange(values.size) >= values.size // 2) & ~resting
-        axes.plot(values[down], places[down], color=BLUE, label="impact, on the way down", **dots)
+    for at, color, name in _attractors(diagram):
+        chosen = np.repeat(at, diagram.events.shape[1]) & ~resting
+        axes.plot(values[chosen], places[chosen], color=color, label=name, **dots)
     if resting.any():
         axes.plot(values[resting], places[resting], color=VERMILLION, label="end of complete chatter", **large)
     above = height == "v" and bool((v < 0).any())  # impacts at an upper wall
@@ -340,6 +343,28 @@ def draw_bifurcation(diagram: Bifurcation, axes: Any, height: str = "v") -> Any:
     if len(axes.get_legend_handles_labels()[1]) > 1:
         axes.legend(loc="best", fontsize="small", markerscale=2)
     return axes
+
+
+def _attractors(diagram: Bifurcation) -> list[tuple[Array, str, str]]:
+    """Values at which an attractor is met, its colour and its name; those met at few values, in grey, have one name.
+
+    The colour is that of a branch of the same orbits, where no other attractor has it.
+    """
+    labels, first_way = diagram.labels, np.arange(diagram.values.size) < diagram.values.size / 2
+    free, rest = list(ATTRACTORS), np.zeros(labels.size, dtype=bool)
+    rows: list[tuple[Array, str, str]] = []
+    for label in np.argsort(-np.bincount(labels), kind="stable").tolist():
+        run, at = diagram.attractors[int(np.argmax(labels == label))], labels == label
+        chaotic = run.kind == "chaotic"
+        if not free and not chaotic:
+            rest |= at
+            continue
+        own = orbit_color(int(run.n), run.k) if run.kind == "orbit" else ""
+        color = BLACK if chaotic else free.pop(free.index(own) if own in free else 0)
+        ways = [name for name, way in (("up", first_way), ("down", ~first_way)) if at[way].any()]
+        only = f", on the way {ways[0]}" if diagram.direction == "both" and len(ways) == 1 else ""
+        rows.append((at, color, ("chaos" if chaotic else run.name) + only))
+    return [*rows, (rest, GREY, "other attractors")] if rest.any() else rows
 
 
 # The cascade beside a border orbit: impacts of the released orbit, and what attracts it, over the distance.

@@ -61,7 +61,7 @@ def test_at_most_three_files_are_named(clone, heading):
 def test_a_command(copy, clone):
     assert steps(clone, "a command")[:2] == ["singimpact/cli/NAME_command.py", "singimpact/cli/group.py"]
     (copy / "singimpact/cli/toy_command.py").write_text(
-        '"""`singimpact toy`: a word."""\n\nimport click\n\n\n@click.command()\ndef command() -> None:\n'
+        '"""`singimpact toy`: a word."""\n\nimport click\n\n\n@click.command()\ndef toy_command() -> None:\n'
         '    """Print a word."""\n    click.echo("a word")\n'
     )
     put(copy, "singimpact/cli/group.py", '    "cite": ', '    "toy": "a word",\n    "cite": ')

@@ -18,4 +18,4 @@ plt.show()
 
 # %%
 # :math:`x'' + x = -\cos 2.8 t`, :math:`r = 0.8`. The simulation goes up and then down over the clearance, so it shows
-# both attractors where there are two.
+# both attractors where there are two. Each attractor has a colour; chaos is black, those met at few values are grey.

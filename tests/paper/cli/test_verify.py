@@ -79,7 +79,7 @@ def test_a_full_disk_is_one_line(singimpact, monkeypatch):
     def full(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("singimpact.cli.verify_command.emit", full)
+    monkeypatch.setattr("singimpact.cli.claim_commands.emit", full)
     result = singimpact("verify")
     assert result.exit_code == 1
     assert result.stderr == "singimpact: the system refused: [Errno 28] No space left on device\n"

@@ -154,9 +154,9 @@ def test_drawn_without_a_warning(number):
 
 
 def test_the_command(tmp_path):
-    from singimpact.cli.figure_command import command
+    from singimpact.cli.figure_command import figure_command
 
-    told = CliRunner().invoke(command, ["11", "-o", str(tmp_path), "--format", "svg", "--data"])
+    told = CliRunner().invoke(figure_command, ["11", "-o", str(tmp_path), "--format", "svg", "--data"])
     assert told.exit_code == 0, told.output
     assert (tmp_path / "figure11.svg").read_text().count("<path") > 5
     data = json.loads((tmp_path / "figure11.json").read_text())
@@ -240,12 +240,12 @@ def test_letters_are_eight_points_high_on_a_journals_page(look):
 
 
 def test_the_command_takes_serif_and_dark(tmp_path):
-    from singimpact.cli.figure_command import command
+    from singimpact.cli.figure_command import figure_command
 
     written = []
     for n, options in enumerate([[], ["--serif"], ["--dark"]]):
         target = tmp_path / f"{n}.svg"
-        told = CliRunner().invoke(command, ["11", "-o", str(target), *options])
+        told = CliRunner().invoke(figure_command, ["11", "-o", str(target), *options])
         assert told.exit_code == 0, told.output
         written.append(target.read_text())
     assert "STIX" in written[1]

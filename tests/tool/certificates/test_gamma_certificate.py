@@ -237,9 +237,9 @@ def test_from_the_command_line(singimpact, tmp_path):
 def test_bad_command_lines(words, why):
     from click.testing import CliRunner
 
-    from singimpact.cli.certify_command import command
+    from singimpact.cli.certify_command import certify_command
 
-    done = CliRunner().invoke(command, list(words))
+    done = CliRunner().invoke(certify_command, list(words))
     assert isinstance(done.exception, si.InputError)
     assert why in str(done.exception)
 

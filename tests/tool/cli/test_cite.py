@@ -6,14 +6,14 @@ import re
 from click.testing import CliRunner
 
 import singimpact
-from singimpact.cli.cite_command import command
+from singimpact.cli.claim_commands import cite_command
 
 
 def test_what_to_cite():
-    text = CliRunner().invoke(command, []).output
+    text = CliRunner().invoke(cite_command, []).output
     assert singimpact.__version__ in text
     assert "Chillingworth" in text
-    assert json.loads(CliRunner().invoke(command, ["--json"]).output)["bibtex"].startswith("@software")
+    assert json.loads(CliRunner().invoke(cite_command, ["--json"]).output)["bibtex"].startswith("@software")
 
 
 def test_citation_file_has_this_version(clone):

@@ -11,12 +11,12 @@ import sympy
 from click.testing import CliRunner
 
 import singimpact as si
-from singimpact.cli.derive_command import command
+from singimpact.cli.claim_commands import derive_command
 from singimpact.inputs import InputError
 
 
 def told(*arguments):
-    return CliRunner().invoke(command, list(arguments), catch_exceptions=False).output
+    return CliRunner().invoke(derive_command, list(arguments), catch_exceptions=False).output
 
 
 @pytest.fixture

@@ -73,8 +73,8 @@ def test_sweep(singimpact, tmp_path):
 
 @pytest.mark.parametrize(("name", "setting"), [("chatter", ENDING), ("threshold", SEARCH)])
 def test_the_command_and_the_function_fly_as_many_impacts_as_the_setting_says(name, setting):
-    (option,) = (
-        each for each in import_module(f"singimpact.cli.{name}_command").command.params if each.name == "impacts"
-    )
+    orbit_commands = import_module("singimpact.cli.orbit_commands")
+    command = getattr(orbit_commands, f"{name}_command")
+    (option,) = (each for each in command.params if each.name == "impacts")
     function = si.ImpactOscillator.chatter_limit if name == "chatter" else si.threshold
     assert option.default == inspect.signature(function).parameters["impacts"].default == setting.impacts

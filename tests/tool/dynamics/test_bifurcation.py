@@ -52,7 +52,6 @@ def test_both_ways_are_drawn_and_written(tmp_path):
     found = si.bifurcation(si.linear(2, "0.3", "0.5"), "clearance", (0.2, 0.3), 3, impacts=30, kept=2, direction="both")
     axes = si.plot(found)
     assert axes.get_xlim() == (0.2, 0.3)
-    assert "impact, on the way down" in [text.get_text() for text in axes.get_legend().get_texts()]
     found.to_csv(tmp_path / "both.csv")
     assert len((tmp_path / "both.csv").read_text().splitlines()) == 13
 
@@ -123,3 +122,23 @@ def test_events_have_the_label_of_their_attractor_and_orbits_a_rotation_number()
     assert found.table()["attractor"].tolist() == np.repeat(found.labels, 12).tolist()
     rest = si.bifurcation(si.linear(2, 0, "0.5"), "clearance", ("0.7", "1.5"), 2, kept=4)
     assert np.isnan(rest.rotation).all()
+
+
+def test_attractors_have_colours_and_names_in_the_picture():
+    """A (3, 3) orbit that is met on the way up alone beside a (1, 1) orbit that attracts on both ways."""
+    osc = si.linear("2.8", "0.1", "0.8", amplitude=-1)
+    found = si.bifurcation(osc, "clearance", ("0.12", "0.14"), 8, start=("0.65", "0.5"), kept=6, direction="both")
+    dots = {line.get_label(): line for line in si.plot(found).lines if line.get_label().startswith("(")}
+    assert list(dots) == ["(1, 1) orbit", "(3, 3) orbit, on the way up"]
+    assert len({line.get_color() for line in dots.values()}) == 2
+    for label, line in zip(np.argsort(-np.bincount(found.labels)), dots.values(), strict=True):
+        assert sorted(line.get_ydata()) == sorted(found.events[found.labels == label, :, 1].ravel())
+
+
+def test_attractors_met_at_few_values_are_drawn_in_one_colour():
+    found = si.bifurcation(si.linear("2.8", 0, "0.8"), "clearance", ("0.02", "0.04"), 24, settle=400, kept=8)
+    lines = {line.get_label(): line for line in si.plot(found).lines}
+    assert len(set(found.labels)) > 6
+    assert lines["other attractors"].get_xdata().size
+    drawn = sum(line.get_xdata().size for name, line in lines.items() if not name.startswith(("_", "end")))
+    assert drawn == np.count_nonzero(found.events[..., 2] != 1)

@@ -1,4 +1,4 @@
-"""`singimpact bench`: run time against error, compared with other programs that a user could take."""
+"""Commands that measure: bench, stress, selftest."""
 
 from __future__ import annotations
 
@@ -10,11 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from singimpact.cli.model_options import model_options, take_model
 from singimpact.cli.output import (
     as_json_text,
     choice_option,
     columns,
     emit,
+    give,
     markdown,
     output_options,
     page_format,
@@ -28,6 +30,7 @@ from singimpact.store import folder, write_text
 if TYPE_CHECKING:
     from singimpact.bench.measuring import Effort, Measured
     from singimpact.bench.steep_balls import Enclosures, Estimate
+
 
 # ---- the tables of `singimpact bench states`
 
@@ -117,7 +120,7 @@ def _estimate(name: str, given: Estimate | None) -> str:
 @whole_option("--digit-pairs", 0, None, "Of these, states enclosed with 40 digits too.", 200)
 @click.option("--store", is_flag=True, help="Store the ratios of the group limit in place of those of the package.")
 @output_options
-def command(
+def bench_command(
     groups: tuple[str, ...],
     quick: bool,
     store: bool,
@@ -238,3 +241,54 @@ def _text(found: Measured, form: str) -> str:
         parts.append(NOTE)
     parts.append(reached(found))
     return "\n\n".join(part for part in parts if part)
+
+
+@click.command()
+@click.argument("functions", metavar="[FUNCTION]...", nargs=-1)
+@click.option("--place", "limit", metavar="PLACE", help="One row of the table alone, such as 'a -> 0'.")
+@click.option("--quick", is_flag=True, help="Fewer points in every sequence.")
+@page_format()
+@output_options
+def stress_command(
+    functions: tuple[str, ...], limit: str | None, quick: bool, form: str, as_json: bool, output: str | None
+) -> None:
+    """The largest error of every public numerical function near its singular points, compared with 60 digits.
+
+    The exit code is 1 if an error exceeds 100 units of condition times epsilon, or a status is wrong.
+    """
+    from singimpact.bench.page import stress_page
+    from singimpact.bench.stress.table import NOTE, POINTS, QUICK, as_data, chosen, stressed, table, worst_states
+
+    pairs = chosen(functions, limit)
+    with ProgressLine() as line:
+        cells = stressed(pairs, QUICK if quick else POINTS, lambda done, text: line.show(done, len(pairs), text))
+    laid_out = columns if form == "text" else markdown
+    text = "\n\n".join([laid_out(*table(cells)), NOTE, laid_out(*worst_states(cells))])
+    if form == "page":
+        text = stress_page(text)
+    emit(as_json_text({"quick": quick, "cells": as_data(cells)}) if as_json else text, output)
+    if any(cell.failed for cell in cells):
+        sys.exit(1)
+
+
+@click.command()
+@click.argument("file", metavar="[MODEL]", required=False)
+@model_options
+@whole_option("--states", 1, 10**6, "Number of states.", 1000)
+@whole_option("--seed", 0, None, "Seed of the random states.", 0)
+@output_options
+def selftest_command(
+    file: str | None, states: int, seed: int, as_json: bool, output: str | None, **options: str | None
+) -> None:
+    """Fly random states of a model forward and back, against small fixed steps, with more digits and in balls; try its
+    orbits, chatter limits, basins and tangency points.
+
+    MODEL is a TOML file, as for --model. The exit code is 1 if a result is wrong.
+    """
+    osc = take_model(options, file)
+    from singimpact.bench.selftest.run import selftest
+
+    report = selftest(osc, states=states, seed=seed)
+    give({"model": osc.to_dict(), **report.as_data()}, str(report), as_json, output)
+    if report.wrong:
+        sys.exit(1)

@@ -1,0 +1,294 @@
+"""Commands of periodic orbits and of borders: branch, events, border."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from singimpact.branches.events import KINDS
+from singimpact.cli.model_options import (
+    model_options,
+    orbit_options,
+    over_option,
+    take_branches,
+    take_ends,
+    take_model,
+    take_orbits,
+)
+from singimpact.cli.output import (
+    as_json_text,
+    choice_option,
+    columns,
+    csv_option,
+    give,
+    picture_option,
+    save,
+    whole_option,
+)
+from singimpact.inputs import InputError
+from singimpact.oscillator.moving_number import value_of
+from singimpact.result import one_table
+from singimpact.store import write_table
+
+if TYPE_CHECKING:
+    from singimpact.branches.border import BorderOrbit
+    from singimpact.branches.branch import Branch
+    from singimpact.branches.event_curve import EventCurve
+    from singimpact.branches.events import Event
+    from singimpact.branches.orbits import PeriodicOrbit
+
+
+@click.command()
+@model_options
+@orbit_options
+@over_option
+@click.option("--from", "low", metavar="NUMBER", help="Its least value.  [default: half of the model's value]")
+@click.option("--to", "high", metavar="NUMBER", help="Its largest value.  [default: 1.5 times the model's]")
+@whole_option("--points", 2, 1_000_000, "At most, each way.", 2000)
+@choice_option("--height", ["v", "phase"], "Vertical axis of the picture.", "v")
+@csv_option("branch, parameter, states, multipliers, ...")
+@picture_option()
+@click.option("--json", "as_json", is_flag=True, help="Give points and events as JSON.")
+def branch_command(
+    orbit: tuple[str, int],
+    start: tuple[str, str] | None,
+    over: str,
+    height: str,
+    csv: str | None,
+    output: str | None,
+    as_json: bool,
+    **options: Any,
+) -> None:
+    """Follow orbits of N impacts, or of a word of walls, in K periods as a parameter changes.
+
+    Prints folds, period doublings, tori, pitchforks, grazes and hidden impacts, and the end of each branch.
+    """
+    ends, points = take_ends(options.pop("low"), options.pop("high")), options.pop("points")
+    model = take_model(options)
+    branches = take_branches(take_orbits(model, orbit, start), over, ends, points)
+    if csv is not None:
+        write_table(csv, one_table({"branch": number, **branch.table()} for number, branch in enumerate(branches, 1)))
+    if output is not None:
+        from singimpact.scenes import new_axes, plot
+
+        save(plot(branches, new_axes(7.2, 4.8), height=height).figure, output)
+    values = {"model": model.to_dict(), "over": over, "branches": [branch.as_dict() for branch in branches]}
+    give(values, shown_branches(branches), as_json)
+
+
+def shown_branches(branches: list[Branch]) -> str:
+    """Branches as text: a table of events, then the end of each branch."""
+    parts = []
+    for number, branch in enumerate(branches, 1):
+        ends = f"{branch.over} from {branch.parameter.min():.9g} to {branch.parameter.max():.9g}"
+        parts.append(f"branch {number}: ({branch.impacts}, {branch.k}) orbits, {len(branch)} points, {ends}")
+        rows = [
+            [event.kind, f"{event.parameter:.15g}", *state(event.orbit), "" if event.orbit.visible else "virtual"]
+            for event in branch.events
+        ]
+        if rows:
+            parts.append(columns(["event", branch.over, "tau", "v", ""], rows))
+        parts += [f"  {note}" for note in branch.notes]
+    return "\n".join(parts)
+
+
+def state(orbit: PeriodicOrbit) -> list[str]:
+    """Phase and velocity of the weakest impact of an orbit, 12 digits."""
+    weakest = min(range(len(orbit.v)), key=lambda i: float(orbit.v[i]))
+    return [f"{float(orbit.tau[weakest]):.12g}", f"{float(orbit.v[weakest]):.12g}"]
+
+
+NEAR = 0.05  # an event that is nearer to a step of a curve than this part of the step is on the curve
+FOLLOWED = tuple(kind.name for kind in KINDS if kind.look is not None)
+
+
+@click.command()
+@model_options
+@orbit_options
+@click.option(
+    "--over",
+    nargs=2,
+    metavar="A B",
+    default=("clearance", "restitution"),
+    show_default=True,
+    help="Two parameters; the orbits are followed over A first.",
+)
+@click.option("--from", "low", nargs=2, metavar="A B", help="Their least values.  [default: half of the model's]")
+@click.option("--to", "high", nargs=2, metavar="A B", help="Their largest values.")
+@click.option(
+    "--event", "kinds", type=click.Choice(FOLLOWED), multiple=True, help="Events of this kind.  [default: all]"
+)
+@whole_option("--index", 1, None, "Only the event with this number in the list of `branch`.")
+@whole_option("--points", 2, 1_000_000, "At most, each way.", 1000)
+@csv_option("curve, kind, both parameters, states, visible.")
+@picture_option()
+@click.option("--json", "as_json", is_flag=True, help="Give points and points of codimension two as JSON.")
+def events_command(
+    orbit: tuple[str, int],
+    start: tuple[str, str] | None,
+    over: tuple[str, str],
+    kinds: tuple[str, ...],
+    csv: str | None,
+    output: str | None,
+    as_json: bool,
+    **options: Any,
+) -> None:
+    """Follow events of the orbits of N impacts in K periods as curves in the plane of two parameters.
+
+    Prints the points of codimension two: resonant grazes, cusps, two grazes at once, and others.
+    """
+    ends, points = take_ends(options.pop("low"), options.pop("high")), options.pop("points")
+    index = options.pop("index")
+    model = take_model(options)
+    both = None if ends is None else ((ends[0][0], ends[1][0]), (ends[0][1], ends[1][1]))
+    branches = take_branches(take_orbits(model, orbit, start), over[0], None if both is None else both[0], 2000)
+    chosen = choose(branches, kinds, index)
+    from singimpact.branches.event_curve import event_curve
+
+    curves: list[EventCurve] = []
+    for event in chosen:
+        if not any(on_curve(event, curve) for curve in curves):
+            curves.append(event_curve(event, over, both, points=points))
+    if csv is not None:
+        tables = [{"curve": number, "kind": curve.kind, **curve.table()} for number, curve in enumerate(curves, 1)]
+        write_table(csv, one_table(tables))
+    if output is not None:
+        from singimpact.scenes import new_axes, plot
+
+        save(plot(curves, new_axes(7.2, 4.8)).figure, output)
+    values = {"model": model.to_dict(), "over": over, "curves": [curve.as_dict() for curve in curves]}
+    give(values, shown_curves(curves), as_json)
+
+
+def choose(branches: list[Branch], kinds: tuple[str, ...], index: int | None) -> list[Event]:
+    """The events that the options name; the graze of an orbit without impact is that of the orbit with one.
+
+    Raises
+    ------
+    InputError : there is none.
+    """
+    every = [event for branch in branches for event in branch.events]
+    chosen = [
+        event for number, event in enumerate(every, 1) if index in (None, number) and event.kind in (kinds or FOLLOWED)
+    ]
+    if not chosen:
+        names = ", ".join(f"{number} {event.kind}" for number, event in enumerate(every, 1)) or "none"
+        raise InputError(f"no such event: those of the branch are {names}; --from and --to make it longer")
+    return [event if event.orbit.n else _with_impact(event, branches[0]) for event in chosen]
+
+
+def _with_impact(event: Event, free: Branch) -> Event:
+    """A graze of orbits without impact, on the branch of orbits with the impact that begins there."""
+    from singimpact.branches.branch import branch
+
+    ends = float(free.parameter.min()), float(free.parameter.max())
+    same = [each for each in branch(event.others()[0], event.over, ends).events if each.described.at_impact]
+    return min(same, key=lambda each: abs(each.parameter - event.parameter))
+
+
+def on_curve(event: Event, curve: EventCurve) -> bool:
+    """Whether an event is one of a curve's."""
+    import numpy as np
+
+    if (event.kind, event.orbit.n, event.orbit.k) != (curve.kind, curve.n, curve.k):
+        return False
+    # the two numbers and the least velocity, each in units of its range
+    rows = np.column_stack([curve.parameters, curve.v.min(axis=1)])
+    numbers = [event.parameter if name == event.over else value_of(event.orbit.oscillator, name) for name in curve.over]
+    scale = np.maximum(np.ptp(rows, axis=0), 1e-300)
+    scale[2] = np.abs(curve.v).max() or 1.0
+    points, at = rows / scale, np.array([*numbers, float(np.min(event.orbit.v))]) / scale
+    move = np.diff(points, axis=0)
+    length = np.linalg.norm(move, axis=1) + 1e-300
+    share = (((at - points[:-1]) * move).sum(axis=1) / length**2).clip(0, 1)
+    gap = np.linalg.norm(points[:-1] + share[:, None] * move - at, axis=1)
+    return bool((gap < NEAR * length).any())
+
+
+def shown_curves(curves: list[EventCurve]) -> str:
+    """Curves for people: special points as a table, then how each ends."""
+    parts = []
+    for number, curve in enumerate(curves, 1):
+        parts.append(f"curve {number}: {curve.kind} of ({curve.impacts}, {curve.k}) orbits, {len(curve)} points")
+        if curve.special:
+            rows = [[point.kind, *map("{:.15g}".format, point.parameters)] for point in curve.special]
+            parts.append(columns(["point", *curve.over], rows))
+        parts += [f"  {note}" for note in curve.notes]
+    return "\n".join(parts)
+
+
+@click.command()
+@model_options
+@over_option
+@click.option("--from", "low", metavar="NUMBER", help="Its least value; half of the model's value without it.")
+@click.option("--to", "high", metavar="NUMBER", help="Its largest value; one and a half of the model's without it.")
+@whole_option("--periods", 1, 1000, "Within which it returns.", 1)
+@whole_option("--points", 2, 1_000_000, "Values looked at.", 200)
+@click.option("--digits", type=int, metavar="N", help="Decimal digits, certified where r is a number.")
+@click.option("--cascade", is_flag=True, help="Give edges and attractors beside each; -o does, too.")
+@picture_option("The picture of the first one's cascade: .png, .pdf or .svg.")
+@click.option("--json", "as_json", is_flag=True, help="Give them as JSON.")
+def border_command(
+    over: str,
+    periods: int,
+    points: int,
+    digits: int | None,
+    cascade: bool,
+    output: str | None,
+    as_json: bool,
+    **options: str | None,
+) -> None:
+    """Border orbits: released at rest at a zero of a_c, back exactly on gamma of such a zero.
+
+    There complete chatter becomes incomplete. Beside it the number of impacts changes at edges whose distances shrink
+    by mu(r), with attractors between.
+    """
+    ends = take_ends(options.pop("low"), options.pop("high"))
+    model = take_model(options)
+    from singimpact.branches.border import border_orbits
+
+    borders = border_orbits(model, over, ends, digits=digits, periods=periods, points=points)
+    if output is not None:
+        if not borders:
+            raise InputError(f"no border orbit to draw: {'; '.join(borders.notes)}")
+        save(_picture(borders[0]), output)
+    if as_json:
+        rows = [as_listed(border, cascade) for border in borders]
+        click.echo(as_json_text({"model": model.to_dict(), "over": over, "orbits": rows, "notes": list(borders.notes)}))
+    else:
+        parts = [line for border in borders for line in shown_border(border, cascade)] or ["no border orbit found"]
+        click.echo("\n".join([*parts, *(f"  {note}" for note in borders.notes)]))
+
+
+def _picture(border: BorderOrbit) -> Any:
+    from matplotlib.figure import Figure
+
+    from singimpact.scenes.branch_picture import draw_border
+
+    figure = Figure(figsize=(7.2, 5.2), dpi=150, layout="constrained")
+    return draw_border(border, *figure.subplots(2, sharex=True, height_ratios=(3, 2))).figure
+
+
+def as_listed(border: BorderOrbit, cascade: bool) -> dict[str, Any]:
+    """A border orbit as JSON, with its cascade or without."""
+    return border.as_dict() | ({"cascade": border.cascade.as_dict()} if cascade else {})
+
+
+def shown_border(border: BorderOrbit, cascade: bool) -> list[str]:
+    """A border orbit for people."""
+    lines = [repr(border)[1:-1], *(f"  {note}" for note in border.notes)]
+    if cascade:
+        edges = border.cascade
+        rows = []
+        for i, number in enumerate(edges.impacts.tolist()):
+            ratio = f"{float(edges.ratios[i]):.10f}" if i < len(edges.ratios) else ""
+            orbit = edges.windows[i].orbit if i < len(edges.windows) else None
+            size = name = ""
+            if orbit is not None:
+                size = f"{abs(complex(orbit.multipliers[0])):.4f}"
+                name = f"({'inf' if orbit.kind == 'chatter' else int(orbit.n)}, {orbit.k})"
+            rows.append([str(number), f"{float(edges.distance[i]):.6e}", ratio, name, size])
+        names = ["impacts", "distance of the edge", "ratio to the next", "attractor", "multiplier"]
+        lines += [repr(edges)[1:-1], columns(names, rows), *(f"  {note}" for note in edges.notes)]
+    return lines
