@@ -7,21 +7,20 @@ from singimpact.handed_on import names_of
 
 _FILES = {
     "drawn": "Draws KINDS Problem RESTITUTIONS values",
-    "fresh": "cost",
     "groups": "GROUPS measured usual",
     "groups.impact_map_rows": "sizes_of taylor_stepper",
     "groups.limit_rows": "BEFORE_SERIES SCRIPTS SERIES reference script",
     "groups.series_rows": "Task",
     "measuring": (
-        "Aim Case Counted EPSILON Effort FULL Measured Method QUICK Timed condition cpu_seconds measure relative_error"
+        "Aim Case Counted EPSILON Effort FULL Measured Method QUICK Timed condition cost cpu_seconds measure "
+        "relative_error"
     ),
     "page": "ABOUT COMMAND READING STRESS_ABOUT STRESS_COMMAND digest_of recorded stress_page timed_digest",
     "peers.fixed_steps": "flights numbers orbit",
     "random_states": "release_trial",
     "report": "in_words plotted reached table",
     "selftest.basin_pixels": "Follower row",
-    "selftest.followed_orbits": "limits orbits",
-    "selftest.responses": "balls derivatives digits fixed_steps rebounds",
+    "selftest.responses": "balls derivatives digits fixed_steps limits orbits rebounds",
     "selftest.rows": "flown",
     "selftest.run": "grazes lanes",
     "steep_balls": "AGREE APART COLUMNS Flown MORE OPEN enclosed summary",

@@ -22,7 +22,7 @@ _FILES = {
     "manifold": "Manifold",
     "starts": "conditions",
     "orbits": "PeriodicOrbit",
-    "released": "Releases",
+    "resting": "Releases",
     "saddle_arcs": "expansion local_arc returned",
     "saddle_cones": "Cones",
     "transitions": "OrbitTransitions",

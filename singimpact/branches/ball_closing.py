@@ -109,13 +109,7 @@ class BallClosing:
     touches = False
 
     def __init__(
-        self,
-        osc: Oscillator,
-        k: int,
-        digits: int,
-        bits: int,
-        over: str | None = None,
-        word: tuple[int, ...] = (),
+        self, osc: Oscillator, k: int, digits: int, bits: int, over: str | None = None, word: tuple[int, ...] = ()
     ) -> None:
         self.osc, self.digits, self.over, self.word = osc, digits, over, word
         if osc.upper is not None and over is not None and over not in osc.parameters:

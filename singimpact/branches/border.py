@@ -19,7 +19,7 @@ from singimpact.branches.border_digits import in_digits
 from singimpact.branches.branch import interval
 from singimpact.branches.cascade import Cascade, cascade
 from singimpact.branches.orbits import Notes
-from singimpact.branches.released import Released, Releases, Return
+from singimpact.branches.resting import Released, Releases, Return
 from singimpact.dynamics.long_run import lift_offs
 from singimpact.dynamics.threshold import threshold
 from singimpact.flights.impact_map import checked_digits

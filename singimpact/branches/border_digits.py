@@ -20,7 +20,7 @@ from singimpact.algebra.expressions import Number
 from singimpact.algebra.numbers import as_float, exact
 from singimpact.algebra.precision import Ladder, balls_at, digits_at, for_user
 from singimpact.algebra.solving import newton_in_balls
-from singimpact.branches.released import Return
+from singimpact.branches.resting import Return
 from singimpact.contact.zero_ahead import ContactZero, next_zero
 from singimpact.dynamics.enclosed import enclosable, end_of_gamma, searched, side
 from singimpact.flights.enclosures.analytic_flow import AnalyticFlow

@@ -19,8 +19,7 @@ from singimpact.algebra.precision import digits_at, for_user
 from singimpact.algebra.solving import halved
 from singimpact.branches.border_digits import DigitOrbits
 from singimpact.branches.orbits import PeriodicOrbit, chatter_orbit
-from singimpact.branches.released import Return
-from singimpact.branches.resting import SAME_PHASE
+from singimpact.branches.resting import SAME_PHASE, Return
 from singimpact.dynamics.lift_off import turns_between
 from singimpact.dynamics.orbit import Orbit, orbit
 from singimpact.flights.derivative import derivative

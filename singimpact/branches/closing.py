@@ -269,8 +269,8 @@ class Closing:
         n, values = self.n, self.values(point)
         period = self.period(point)
         # a scale for orbits without a fast impact: what the force gives in a sixteenth of a period
-        push = max(abs(float(self.family.end(values, i * period / 8, 0.0, 0.0).by_time[1])) for i in range(8))
-        speeds = np.full(n, max(float(np.abs(point[n : 2 * n]).max()), push * period / 16, 1e-300))
+        push = self.family.push(values, period) * period / 16
+        speeds = np.full(n, max(float(np.abs(point[n : 2 * n]).max()), push, 1e-300))
         return np.concatenate([np.full(n, period), speeds, np.ones(len(self.family.over))])
 
     def heights(self, point: Array) -> list[tuple[float, float]]:

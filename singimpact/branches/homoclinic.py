@@ -238,6 +238,53 @@ class _Place:
     side: int
 
 
+@dataclass(frozen=True)
+class Ends:
+    """The arcs at both saddles, and the conditions of an orbit between them.
+
+    Parameters
+    ----------
+    unstable, stable : arcs of W^u and W^s. period : of the forcing.
+    """
+
+    unstable: LocalArc
+    stable: LocalArc
+    period: float
+
+    def missed(self, states: Array) -> tuple[Array, Array]:
+        """G(z_i) - z_{i+1}, whole periods taken off, shape (N, 2), and D G at z_0 ... z_{N-1}."""
+        osc = self.unstable.saddle.oscillator
+        miss = model_step(osc, states[:-1]) - states[1:]
+        miss[:, 0] -= self.period * np.rint(miss[:, 0] / self.period)
+        return miss, derivative(osc, states[:-1, 0], states[:-1, 1]).matrix
+
+    def matrix(self, slopes: Array, s: Array) -> Array:
+        """Derivatives of the misses by s_u, z_1 ... z_{N-1}, s_s: of row i and column j the entry [1 + i - j, j]."""
+        count = 2 * len(slopes)
+        matrix = np.zeros((4, count))  # two diagonals below the main one and one above
+        for i, slope in enumerate(slopes):
+            if i == 0:
+                matrix[[1, 2], 0] = slope @ self.unstable.slope(float(s[0]))
+            else:
+                for column in (0, 1):
+                    at = 2 * i - 1 + column
+                    matrix[[1 + 2 * i - at, 2 + 2 * i - at], at] = slope[:, column]
+            if i < len(slopes) - 1:
+                matrix[0, [2 * i + 1, 2 * i + 2]] = -1.0
+        matrix[[0, 1], count - 1] = -self.stable.slope(float(s[1]))
+        return matrix
+
+    def angles(self, slopes: Array, s: Array) -> Array:
+        """Angles between the tangents at all impacts, in (0, pi/2]."""
+        away, home = [_unit(self.unstable.slope(float(s[0])))], [_unit(self.stable.slope(float(s[1])))]
+        for slope in slopes:
+            away.append(_unit(slope @ away[-1]))
+        for slope in slopes[::-1]:
+            home.append(_unit(np.linalg.solve(slope, home[-1])))
+        cross = [abs(float(u[0] * w[1] - u[1] * w[0])) for u, w in zip(away, home[::-1], strict=True)]
+        return np.arcsin(np.minimum(cross, 1.0))
+
+
 @dataclass
 class _Search:
     """Crossings of two polylines, refined one by one."""
@@ -297,17 +344,20 @@ class _Search:
 
     def _refined(self, states: Array, s: Array, expected: tuple[int, Array]) -> Crossing | str:
         """The orbit near some states, or why there is none; `expected` is the place of one of them on the polylines."""
+        from scipy.linalg import solve_banded
+
         sides, size = self.unstable.window.sides, np.inf
+        ends = Ends(self.unstable.arc, self.stable.arc, sides[0])
         if not np.isfinite(states).all():
             return "a flight between their impacts has no end"
         for _ in range(SETTINGS.rounds):
             if not (states[:, 1] > 0).all():
                 return "Newton's method leaves v > 0"
-            miss, slopes = self._missed(states)
+            miss, slopes = ends.missed(states)
             if not np.isfinite(miss).all() or not np.isfinite(slopes).all():
                 return "a flight next to them grazes"
             try:
-                step = self._step(miss, slopes, s)
+                step = solve_banded((2, 1), ends.matrix(slopes, s), miss.ravel())
             except np.linalg.LinAlgError:
                 return "they touch without crossing, or the orbit grazes"
             s = s - step[[0, -1]]
@@ -318,7 +368,7 @@ class _Search:
                 break
         if not (states[:, 1] > 0).all():
             return "Newton's method leaves v > 0"
-        miss, slopes = self._missed(states)
+        miss, slopes = ends.missed(states)
         residual = float(np.abs(miss / sides).max())
         if not residual < SETTINGS.residual:
             return "Newton's method does not end"
@@ -327,7 +377,7 @@ class _Search:
         if not (np.abs(s) > 1e-12 * np.array([self.unstable.arc.size, self.stable.arc.size])).all():
             return "Newton's method ends in the saddle"
         states[:, 0] = np.mod(states[:, 0], sides[0])
-        angles = self._angles(slopes, s)
+        angles = ends.angles(slopes, s)
         index = int(np.argmax(self._distances(states)))
         error = size + max(self.unstable.error, self.stable.error)
         tau, v = states[index].tolist()
@@ -378,42 +428,6 @@ class _Search:
             if arc.stable:
                 added.append(arc.points(np.array([s * inwards ** (turn + 1)])))
         return added, s * inwards**count
-
-    def _missed(self, states: Array) -> tuple[Array, Array]:
-        """G(z_i) - z_{i+1}, whole periods taken off, shape (N, 2), and D G at z_0 ... z_{N-1}."""
-        osc, period = self.unstable.saddle.oscillator, self.unstable.window.sides[0]
-        miss = model_step(osc, states[:-1]) - states[1:]
-        miss[:, 0] -= period * np.rint(miss[:, 0] / period)
-        return miss, derivative(osc, states[:-1, 0], states[:-1, 1]).matrix
-
-    def _step(self, miss: Array, slopes: Array, s: Array) -> Array:
-        """Newton's step of s_u, z_1 ... z_{N-1}, s_s; the matrix has two diagonals below the main one and one above."""
-        from scipy.linalg import solve_banded
-
-        count = 2 * len(slopes)
-        matrix = np.zeros((4, count))  # of row i and column j the entry [1 + i - j, j]
-        for i, slope in enumerate(slopes):
-            if i == 0:
-                matrix[[1, 2], 0] = slope @ self.unstable.arc.slope(float(s[0]))
-            else:
-                for column in (0, 1):
-                    at = 2 * i - 1 + column
-                    matrix[[1 + 2 * i - at, 2 + 2 * i - at], at] = slope[:, column]
-            if i < len(slopes) - 1:
-                matrix[0, [2 * i + 1, 2 * i + 2]] = -1.0
-        matrix[[0, 1], count - 1] = -self.stable.arc.slope(float(s[1]))
-        return np.asarray(solve_banded((2, 1), matrix, miss.ravel()))
-
-    def _angles(self, slopes: Array, s: Array) -> Array:
-        """Angles between the tangents at all impacts, in (0, pi/2]."""
-        away = [_unit(self.unstable.arc.slope(float(s[0])))]
-        home = [_unit(self.stable.arc.slope(float(s[1])))]
-        for slope in slopes:
-            away.append(_unit(slope @ away[-1]))
-        for slope in slopes[::-1]:
-            home.append(_unit(np.linalg.solve(slope, home[-1])))
-        cross = [abs(float(u[0] * w[1] - u[1] * w[0])) for u, w in zip(away, home[::-1], strict=True)]
-        return np.arcsin(np.minimum(cross, 1.0))
 
     def _distances(self, states: Array) -> Array:
         """Of states from the impacts of both saddles."""

@@ -6,9 +6,5 @@ Not here: anything a Python caller could want too (`impact_oscillator`), nor tab
 from singimpact.cli.group import main as main
 from singimpact.handed_on import names_of
 
-_FILES = {
-    "branch_commands": "as_listed on_curve",
-    "certify_command": "EVENTS",
-    "group": "COMMANDS main",
-}
+_FILES = {"branch_commands": "EVENTS as_listed on_curve", "group": "COMMANDS main"}
 __getattr__ = names_of(__name__, _FILES)

@@ -189,7 +189,7 @@ def errata_command(form: str, as_json: bool, output: str | None) -> None:
 
 
 def _write_pdf(source: str, output: str) -> None:
-    from singimpact.documents.compiling import CompileError, compiled
+    from singimpact.documents.document_steps import CompileError, compiled
 
     try:
         pdf = compiled(source).pdf
@@ -244,7 +244,7 @@ def derive_command(
     if form == "pdf" and output is None:
         raise InputError("--format pdf goes to files only: give a folder with -o")
     if form == "pdf":
-        from singimpact.documents.compiling import require_latex
+        from singimpact.documents.document_steps import require_latex
 
         require_latex()
     if output is not None:
@@ -287,7 +287,7 @@ def _series(request: SeriesRequest, form: str, output: str | None) -> None:
 
 def _write(document: list[Section], marks: dict[str, Mark], form: str, output: str | None) -> None:
     """The document as text to standard output, or as files in the folder."""
-    from singimpact.documents.compiling import CompileError
+    from singimpact.documents.document_steps import CompileError
     from singimpact.documents.rendering import as_files, as_text
 
     if output is None:

@@ -47,8 +47,9 @@ COMMANDS = {
 FILES = {
     **dict.fromkeys(("map", "orbit", "section", "chatter", "threshold", "lyapunov"), "orbit_commands"),
     **dict.fromkeys(("sweep", "basins", "bifurcation", "regions", "ensemble"), "long_run_commands"),
-    **dict.fromkeys(("branch", "events", "border"), "branch_commands"),
+    **dict.fromkeys(("branch", "events", "border", "certify"), "branch_commands"),
     **dict.fromkeys(("verify", "claims", "errata", "derive", "fixed-points", "cite"), "claim_commands"),
+    **dict.fromkeys(("scene", "classify", "explore"), "picture_commands"),
     **dict.fromkeys(("bench", "stress", "selftest"), "measuring_commands"),
 }
 

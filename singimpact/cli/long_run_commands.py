@@ -106,13 +106,7 @@ LAYERS = ("for-ever", "first-chatter")
 @picture_option(required=True)
 @click.option("--json", "as_json", is_flag=True, help="Give the shares of the classes as JSON.")
 def basins_command(
-    size: int,
-    impacts: int,
-    workers: int | None,
-    layer: str,
-    output: str,
-    as_json: bool,
-    **options: Any,
+    size: int, impacts: int, workers: int | None, layer: str, output: str, as_json: bool, **options: Any
 ) -> None:
     """Basins of attraction on a grid of launches: (n, k) orbits, limit cycles, repeated chatter, rest, chaos.
 

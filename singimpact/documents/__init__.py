@@ -6,8 +6,7 @@ Not here: pictures (`scenes`), the mathematics that is shown (`theory`), the wor
 from singimpact.handed_on import names_of
 
 _FILES = {
-    "compiling": "CompileError compiled",
-    "document_steps": "Mark Section Step claims_of equations_of",
+    "document_steps": "CompileError Mark Section Step claims_of compiled equations_of",
     "rendering": "PAGE as_data as_files as_latex as_markdown as_text latex_text lines_of width",
 }
 __getattr__ = names_of(__name__, _FILES)

@@ -409,7 +409,7 @@ def as_files(
     drawn : gives the picture of a name as PDF, for a PDF; None leaves pictures out.
     """
     if form == "pdf":
-        from singimpact.documents.compiling import compiled
+        from singimpact.documents.document_steps import compiled
 
         names = [step.picture for section in shown for step in section.steps if step.picture and drawn]
         pictures = {f"{name}.pdf": drawn(name) for name in names} if drawn else {}

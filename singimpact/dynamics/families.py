@@ -173,12 +173,7 @@ def beside_members(
     every = np.arange(int(np.prod(members))).reshape(members)
     which, *columns = (
         np.broadcast_to(np.reshape(column, own), shape).ravel()
-        for column, own in (
-            (every, members),
-            (read.tau, read.shape),
-            (read.v, read.shape),
-            (codes, codes.shape),
-        )
+        for column, own in ((every, members), (read.tau, read.shape), (read.v, read.shape), (codes, codes.shape))
     )
     return model, flat, which, columns, shape
 

@@ -7,6 +7,7 @@ the entries of D G keep too few digits of a strong contraction. D G comes with t
 variational equation of others.
 """
 
+from collections import deque
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -333,6 +334,8 @@ class _Run:
                 "the power q < 1 of the speed by which chatter comes to rest"
             )
         self.growth, self.before, self.start = Growth(lives), np.zeros(self.size, int), np.zeros((2, self.size))
+        # without rebound: the last phases of each orbit at which it begins from rest, nan at those with a velocity
+        self.phases: deque[Array] = deque(maxlen=SETTINGS.period + 1 if osc.plastic else 0)
         self.begin()
 
     def begin(self, chosen: Any = slice(None)) -> None:
@@ -356,6 +359,7 @@ class _Run:
             block = max(SETTINGS.block // going.size, SETTINGS.period)
             stretch = lives.advance(np.minimum(block, most[going] - done[going]), going)
             done[going] += np.maximum(lives.flown[going] - before, 1)
+            self.phases.append(np.where(lives.v == 0, lives.phase, np.nan))
             if keep:
                 self.growth.add(stretch)
             for single in stretch.singles:
@@ -367,7 +371,7 @@ class _Run:
     def settled(self, impacts: int) -> Array:
         """The exponents of what orbits settle to."""
         # impacts between two looks whether the orbit has settled, doubled each time
-        block, open_ = 500, np.ones(self.size, bool)
+        block, open_ = 64 if self.lives.members.osc.plastic else 500, np.ones(self.size, bool)
         while open_.any():
             count = np.where(open_, np.minimum(block, SETTINGS.transient - self.before), 0)
             stretch = self.fly(count, keep=False)
@@ -375,6 +379,8 @@ class _Run:
             open_ &= (self.before < SETTINGS.transient) & (self.lives.status == 0) & ~self.over
             if stretch is not None:
                 open_[stretch.chosen[_repeats(self.lives, stretch)]] = False
+            if self.phases:
+                open_ &= ~self._from_the_same_rest()
             block *= 2
         result, open_ = np.zeros((self.size, 14)), np.ones(self.size, bool)
         # the impacts are flown anew when their halves differ
@@ -390,6 +396,16 @@ class _Run:
             if not open_.any():
                 break
         return result
+
+    def _from_the_same_rest(self) -> Array:
+        """Whether the phase at which orbits begin from rest is one of those before."""
+        *before, last = self.phases
+        if self.lives.members.osc.autonomous:
+            return np.isfinite(last)
+        off = (np.reshape(before, (-1, last.size)) - last) / np.where(
+            np.isfinite(self.lives.unit), self.lives.unit, np.nan
+        )
+        return np.asarray((np.abs(off - np.rint(off)) < SETTINGS.close).any(axis=0))
 
     def table(self) -> Array:
         """The fields of `Lyapunov`, one row for each orbit."""

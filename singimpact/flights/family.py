@@ -87,6 +87,7 @@ class Family(ABC):
 
     linear = False
     """Whether its flights have a closed form."""
+    _last_push: tuple[tuple[float, ...], float] = ((), 0.0)
 
     def __init__(self, osc: Oscillator, over: Sequence[str] = ()) -> None:
         self.osc, self.over = osc, tuple(over)
@@ -139,6 +140,14 @@ class Family(ABC):
         return self.oscillator(values)
 
     # ---- flights
+
+    def push(self, values: Values, period: float) -> float:
+        """The largest |x''| of a mass at rest on the wall, at eight phases of a period."""
+        at, (last, push) = (0.0 if self.osc.autonomous else period, *values.values()), self._last_push
+        if at != last:
+            push = max(abs(float(self.end(values, i * period / 8, 0.0, 0.0).by_time[1])) for i in range(8))
+            self._last_push = at, push
+        return push
 
     @abstractmethod
     def end(self, values: Values, tau: float, v: float, time: float) -> End:

@@ -45,6 +45,7 @@ NO_NUMBER |= {
     "transitions",
     "manifold",
     "homoclinic_points",
+    "homoclinic_tangency",
     "border_orbits",
     "cascade",
     "animate",

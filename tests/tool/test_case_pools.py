@@ -96,7 +96,7 @@ def test_a_script_with_a_guard_has_processes(tmp_path):
 
 
 def test_functions_of_modules_have_processes_without_a_guard(tmp_path):
-    text = "import os, singimpact as si\nfrom singimpact.bench.fresh import cost\n" + (
+    text = "import os, singimpact as si\nfrom singimpact.bench.measuring import cost\n" + (
         "import operator\nprint(os.getpid() in si.sweep(operator.methodcaller('__call__'), [os.getpid] * 3).tolist())"
     )
     done = run(tmp_path, text)

@@ -224,7 +224,7 @@ def test_an_interrupted_picture_of_a_sweep_resumes(asked, kind, tmp_path, tmp_pa
         (tmp_path / "model.toml").write_text(MODELS[kind])
         given = ["--model", tmp_path / "model.toml", "--workers", "1"]
     given += {
-        "basins": ["--size", "280", "--impacts", "300"],
+        "basins": ["--size", "180", "--impacts", "300"],
         "bifurcation": ["--from", "0.1", "--to", "0.3", "--points", "700"],
     }[asked]
     given += ["--keep", tmp_path / "kept.npz", "-o", output]

@@ -105,7 +105,7 @@ def test_pdf_is_refused_before_anything_is_derived(monkeypatch, tmp_path, singim
 def test_latex_runs_no_other_program(monkeypatch, tmp_path):
     import subprocess
 
-    from singimpact.documents import compiling
+    from singimpact.documents import document_steps
 
     asked = []
 
@@ -114,8 +114,8 @@ def test_latex_runs_no_other_program(monkeypatch, tmp_path):
         return subprocess.CompletedProcess(command, 1, "", "")
 
     monkeypatch.setattr(subprocess, "run", run)
-    with pytest.raises(compiling.CompileError):
-        compiling._run(str(tmp_path))
+    with pytest.raises(document_steps.CompileError):
+        document_steps._run(str(tmp_path))
     assert "-latexoption=-no-shell-escape" in asked
 
 

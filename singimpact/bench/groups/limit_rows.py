@@ -17,9 +17,8 @@ import numpy as np
 import singimpact as si
 from singimpact.algebra.numbers import Array
 from singimpact.bench.drawn import CHATTERING, CLEARANCES, OMEGAS, Draws, States
-from singimpact.bench.fresh import cost
 from singimpact.bench.groups.public_rows import BALL, PLACES, family_of, one_by_one, square
-from singimpact.bench.measuring import Aim, Case, Effort, Method, Row, Timed
+from singimpact.bench.measuring import Aim, Case, Effort, Method, Row, Timed, cost
 from singimpact.branches.events import PERIOD_DOUBLING
 
 STORED = Path(__file__).parents[1] / "data" / "limits.json"

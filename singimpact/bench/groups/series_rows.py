@@ -10,8 +10,7 @@ from functools import partial
 from itertools import groupby
 
 from singimpact.bench.drawn import values
-from singimpact.bench.fresh import Cost, cost
-from singimpact.bench.measuring import Case, Effort, Method, Timed
+from singimpact.bench.measuring import Case, Cost, Effort, Method, Timed, cost
 
 FLIGHT_TIME = values()["v_c.flight_time[cubic, polynomial forcing](-0.2,0.01)"]
 ON_GAMMA = values()["gamma.v[cubic, polynomial forcing](-0.1)"]

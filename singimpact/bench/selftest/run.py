@@ -17,7 +17,7 @@ import numpy as np
 
 from singimpact.algebra.numbers import EPSILON, Array
 from singimpact.bench.drawn import compile_entries
-from singimpact.bench.selftest import basin_pixels, followed_orbits, responses
+from singimpact.bench.selftest import basin_pixels, responses
 from singimpact.bench.selftest.rows import LEAST, Flown, NotComparable, Row, SelfTest, Tally, compared, flown
 from singimpact.bench.truth.graded_steps import HIT, MISS
 from singimpact.bench.truth.plain_orbits import PlainOrbits
@@ -243,8 +243,8 @@ COMPARED: dict[str, Callable[[Flown], Row]] = {
     "small fixed steps": responses.fixed_steps,
     "more digits": responses.digits,
     "balls": responses.balls,
-    "orbits": followed_orbits.orbits,
-    "chatter limits": followed_orbits.limits,
+    "orbits": responses.orbits,
+    "chatter limits": responses.limits,
     "D G": responses.derivatives,
     "rebounds": responses.rebounds,
     "basins": basin_pixels.row,

@@ -1,13 +1,11 @@
 """Figures B7 and B8: arcs of the visible outline before, at and after transitions, by their ends."""
 
-import json
 from functools import lru_cache
 
 import numpy as np
 import pytest
 
-from singimpact.paper import B7, B8, drawn, legend_words, picture, two_waves
-from singimpact.paper.claims import BEYOND
+from singimpact.paper import B7, B8, picture, two_waves
 
 made = lru_cache(maxsize=None)(picture)
 
@@ -16,23 +14,6 @@ def test_clearances_of_the_panels():
     assert len(B7) == 2
     assert len(B8) == 3
     assert two_waves().clearance == type(two_waves().clearance)(0)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("number", ["B7", "B8"])
-def test_data_and_words(number):
-    found = made(number)
-    assert set(found.claims) <= set(BEYOND)
-    assert found.caption.endswith(".")
-    assert found.caption.count("$") % 2 == 0
-    assert legend_words(found) == ["apparent outline $P$", "discontinuities of $G$: visible part of $P$"]
-    json.dumps(found.to_dict(), allow_nan=False)
-    drawn(found).canvas.draw()
-    for panel in found.panels:
-        (left, right), (low, high) = panel.box
-        for dot in panel.dots:
-            assert left < dot.place[0] < right
-            assert low <= dot.place[1] <= high
 
 
 @pytest.mark.slow

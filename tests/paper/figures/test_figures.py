@@ -10,7 +10,7 @@ from click.testing import CliRunner
 
 import singimpact as si
 from singimpact.inputs import InputError
-from singimpact.paper import CLAIMS, FIGURES, picture
+from singimpact.paper import CLAIMS, FIGURES, drawn, legend_words, picture
 from singimpact.paper.claims import BEYOND as CLAIMS_BEYOND
 from singimpact.paper.figures import BEYOND
 
@@ -271,6 +271,23 @@ def test_figures_beyond_the_paper_have_claims_and_data(name):
         assert all(left <= dot.place[0] <= right and low <= dot.place[1] <= high for dot in panel.dots)
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("number", ["B7", "B8"])
+def test_orbits_and_words_of_both_planes(number):
+    found = made(number)
+    assert set(found.claims) <= set(CLAIMS_BEYOND)
+    assert found.caption.endswith(".")
+    assert found.caption.count("$") % 2 == 0
+    assert legend_words(found) == ["apparent outline $P$", "discontinuities of $G$: visible part of $P$"]
+    json.dumps(found.to_dict(), allow_nan=False)
+    drawn(found).canvas.draw()
+    for panel in found.panels:
+        (left, right), (low, high) = panel.box
+        for dot in panel.dots:
+            assert left < dot.place[0] < right
+            assert low <= dot.place[1] <= high
+
+
 def test_the_paper_has_none_of_them():
     assert not set(BEYOND) & set(FIGURES)
     with pytest.raises(InputError, match="B1 to B9"):
@@ -333,8 +350,9 @@ def test_figure_b5_from_the_command_line(tmp_path):
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=pytest.mark.slow) if name in SECONDS else name for name in BEYOND]
 )
-def test_figures_beyond_the_paper_have_titles(name):
+def test_figures_beyond_the_paper_have_titles(name, monkeypatch):
     """Each carries its title, and no panel of several has a letter alone."""
+    monkeypatch.setattr("singimpact.paper.figures.picture", made)  # the data are those of the test above
     figure = si.figure(name)
     assert figure.get_suptitle() == made(name).title
     titles = [axes.get_title() for axes in figure.axes]
@@ -346,8 +364,6 @@ def test_figures_of_the_paper_leave_their_titles_to_its_captions():
 
 
 def test_8_says_what_the_hairpins_are():
-    from singimpact.paper import legend_words
-
     assert "hairpin" in made(8).caption
     assert any("hairpin" in words for words in legend_words(made(8)))
 

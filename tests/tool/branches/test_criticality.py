@@ -130,7 +130,7 @@ def test_the_doubled_orbit_is_stable_where_the_doubling_is_supercritical(doublin
 def test_amplitudes_beside_a_torus_grow_like_the_square_root(torus):
     """|z|^2 = (|mu| - 1)/|a| on the torus: twice the excess, the square root of two times the size."""
     sizes = []
-    for share in (1e-4, 2e-4):
+    for share in (1e-3, 2e-3):
         model = POL.replace(A=torus.parameter * (1 - share))
         (orbit,) = model.periodic(1, 1, start=(float(torus.orbit.tau[0]), float(torus.orbit.v[0])))
         grown = abs(complex(orbit.multipliers[0])) - 1

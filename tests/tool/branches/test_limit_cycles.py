@@ -144,9 +144,9 @@ def test_arguments_that_mean_nothing_without_a_clock_are_refused(osc):
         osc.replace(g="cos(t) + cos(sqrt(2)*t)").periodic(1, 1)
 
 
-@pytest.mark.parametrize("force", ["x", "x + x**3", "sin(x)", "1"])
-def test_without_losses_a_continuum_is_named_and_no_orbit_is_listed(force):
-    for n in (1, 2):
+@pytest.mark.parametrize(("force", "most"), [("x", 2), ("x + x**3", 2), ("sin(x)", 1), ("1", 2)])
+def test_without_losses_a_continuum_is_named_and_no_orbit_is_listed(force, most):
+    for n in range(1, most + 1):
         cycles = si.ImpactOscillator(force, "0", "-0.3", 1).periodic(n)
         assert len(cycles) == 0
         assert "a continuum of orbits" in cycles.notes[0]

@@ -237,7 +237,7 @@ def test_from_the_command_line(singimpact, tmp_path):
 def test_bad_command_lines(words, why):
     from click.testing import CliRunner
 
-    from singimpact.cli.certify_command import certify_command
+    from singimpact.cli.branch_commands import certify_command
 
     done = CliRunner().invoke(certify_command, list(words))
     assert isinstance(done.exception, si.InputError)

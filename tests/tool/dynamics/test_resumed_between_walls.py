@@ -57,13 +57,13 @@ def test_basins_that_were_interrupted_go_on(wall, monkeypatch, tmp_path):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_studies_of_every_kind_of_model_go_on(kind, monkeypatch, tmp_path):
-    study = partial(si.basins, KINDS[kind], size=12, impacts=500)
+    study = partial(si.basins, KINDS[kind], size=8 if kind == "no period" else 12, impacts=500)
     whole, path = study(), "synchrony:Responses" if kind == "no period" else "settling:_Run"
     stopped(study, monkeypatch, tmp_path / "kept.npz", path, 1 if kind.startswith("no") else 2)
     found = study(output=tmp_path / "kept.npz")
     assert np.array_equal(found.codes, whole.codes)
     assert [run.name for run in found.attractors] == [run.name for run in whole.attractors]
-    over = partial(si.bifurcation, KINDS[kind], "clearance", (0.1, 0.15), 4, impacts=60, kept=20, settle=500)
+    over = partial(si.bifurcation, KINDS[kind], "clearance", (0.1, 0.15), 2, impacts=60, kept=20, settle=250)
     again = [over(output=tmp_path / "over.npz") for _ in range(2)]
     for diagram in again:
         assert np.array_equal(over().events, diagram.events, equal_nan=True)

@@ -128,7 +128,7 @@ def test_branches_over_a_bifurcation_diagram(branch) -> None:
     assert same is axes
     assert (axes.get_xlim(), axes.get_ylim()) == limits
     words = [text.get_text() for text in axes.get_legend().get_texts()]
-    assert words[0] == "impact"
+    assert words[0] == "(2, 2) orbit"
     assert "(1, 1) orbits" in words
     assert [text.get_text() for text in axes.texts] == ["doubling"]  # the graze is outside
 
