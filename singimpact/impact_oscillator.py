@@ -15,6 +15,7 @@ from singimpact.inputs import (
     checked_keywords,
     checked_methods,
     refuse,
+    require,
     takes_two_walls,
     whole,
     with_walls,
@@ -434,8 +435,7 @@ class ImpactOscillator(Oscillator):
         if wall_codes(self, wall).any():
             return self.mirrored.release(tau)
         states = States.read(tau, 0.0).in_period(self)
-        if states.shape:
-            raise refuse("tau", tau, "one number")
+        require(not states.shape, "tau", tau, "one number")
         start = float(states.tau[0])
         return (start if self.acceleration(tau) > 0 else release(self, start)) + float(np.ravel(states.turns)[0])
 
@@ -526,8 +526,7 @@ def linear(
     >>> linear("2.8", 0, "0.8", damping="0.1")
     ImpactOscillator(f='x + damping*xdot', g='cos(omega*t)', clearance='0', restitution='0.8', parameters={'damping': '0.1', 'omega': '2.8'})
     """  # noqa: E501
-    if compare(constant("omega", omega), 0) <= 0:
-        raise refuse("omega", omega, "a number > 0")
+    require(compare(constant("omega", omega), 0) > 0, "omega", omega, "a number > 0")
     numbers = {"damping": (damping, 0), "stiffness": (stiffness, 1), "amplitude": (amplitude, 1), "phase": (phase, 0)}
     changed = {name: value for name, (value, usual) in numbers.items() if compare(constant(name, value), usual)}
     force = ("stiffness*x" if "stiffness" in changed else "x") + (" + damping*xdot" if "damping" in changed else "")
@@ -547,8 +546,7 @@ def universal(kappa: Any, restitution: Any) -> ImpactOscillator:
     >>> float(step.tau), float(step.v)
     (3.0, 32.0)
     """
-    if not compare(constant("kappa", kappa), 0):
-        raise refuse("kappa", kappa, "a number other than 0")
+    require(compare(constant("kappa", kappa), 0), "kappa", kappa, "a number other than 0")
     return ImpactOscillator("0", "12*kappa*(t**2 - 1)", 0, restitution, {"kappa": kappa})
 
 

@@ -45,6 +45,28 @@ def refuse(name: str, value: object, accepted: str) -> InputError:
     return InputError(f"{name} = {shown(value)} is not accepted: give {accepted}")
 
 
+def need(holds: object, error: Exception) -> None:
+    """Raise an error unless a condition holds.
+
+    Examples
+    --------
+    >>> need(2 + 2 == 4, ArithmeticError("the sum is another"))
+    """
+    if not holds:
+        raise error
+
+
+def require(holds: object, name: str, value: object, accepted: str) -> None:
+    """Refuse an input unless a condition holds.
+
+    Examples
+    --------
+    >>> require(0.5 <= 1, "restitution", 0.5, "a number in (0, 1]")
+    """
+    if not holds:
+        raise refuse(name, value, accepted)
+
+
 def whole(name: str, value: object, least: int, most: int) -> int:
     """A whole number from least to most, or a refusal.
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 from singimpact.algebra.numbers import as_float, as_fraction, constant
 from singimpact.impact_oscillator import ImpactOscillator
-from singimpact.inputs import InputError, checked_keywords, refuse, require_known, takes_two_walls, whole
+from singimpact.inputs import InputError, checked_keywords, refuse, require, require_known, takes_two_walls, whole
 from singimpact.oscillator.model import Oscillator, require_model
 
 if TYPE_CHECKING:
@@ -61,8 +61,7 @@ def swan_points(
     """
     from singimpact.contact.swans import swan_points_over_clearance
 
-    if over != "clearance":
-        raise refuse("over", over, "'clearance'")
+    require(over == "clearance", "over", over, "'clearance'")
     model = ImpactOscillator(f, g, 0, 1, parameters)
     return swan_points_over_clearance(model, None if between is None else interval(between))
 
@@ -85,8 +84,7 @@ def interval(between: Any) -> tuple[Fraction, Fraction]:
         low, high = (_bound(end) for end in between)
     except (TypeError, ValueError) as error:
         raise error if isinstance(error, InputError) else refuse("between", between, "two numbers low < high") from None
-    if not low < high:
-        raise refuse("between", between, "two numbers low < high")
+    require(low < high, "between", between, "two numbers low < high")
     return low, high
 
 

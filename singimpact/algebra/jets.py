@@ -16,6 +16,7 @@ from singimpact.algebra.polynomials import Exponents, SparsePolynomials
 from singimpact.algebra.precision import kept_property
 from singimpact.algebra.taylor import taylor_coefficients
 from singimpact.handed_on import sympy
+from singimpact.inputs import need
 
 
 @dataclass(frozen=True)
@@ -177,8 +178,7 @@ class Jet:
     def reciprocal(self) -> Jet:
         """1/self, part by part; the constant term must have an inverse in the ring, and no variable weight 0."""
         space = self.space
-        if 0 in space.weights:
-            raise TypeError("a jet with a variable of weight 0 has no reciprocal")
+        need(0 not in space.weights, TypeError("a jet with a variable of weight 0 has no reciprocal"))
         found = start = space.power(space.constant(self.constant_term()), Fraction(-1))
         for degree in range(1, space.order + 1):
             found = found - (self * found).part(degree) * start

@@ -35,7 +35,7 @@ from singimpact.algebra.expressions import (
     subtract,
 )
 from singimpact.algebra.parsing import LIMITS, bounded_power, defined, from_sympy, parse, refused_function
-from singimpact.inputs import InputError, refuse, require_memory, shown
+from singimpact.inputs import InputError, refuse, require, require_memory, shown
 
 Array = np.ndarray[Any, Any]
 EPSILON = 2.0**-52  # from 1 to the next double
@@ -104,8 +104,7 @@ def constant(name: str, value: Any) -> Expression:
     True
     """
     tree = tree_of(value, (), name)
-    if names_in(tree):
-        raise refuse(name, value, ACCEPTED)
+    require(not names_in(tree), name, value, ACCEPTED)
     if not isinstance(tree, Number) and not _ball(tree, 64).is_finite():
         raise refuse(name, value, ACCEPTED)
     return tree

@@ -30,7 +30,7 @@ from singimpact.algebra.expressions import (
     substitute,
     walk,
 )
-from singimpact.inputs import InputError, meant, shown
+from singimpact.inputs import InputError, meant, need, shown
 
 
 @dataclass(frozen=True)
@@ -376,8 +376,7 @@ def _convert(tree: Any, names: tuple[str, ...], depth: int) -> Expression:
     if tree.is_Rational:
         return Number(Fraction(int(tree.p), int(tree.q)))
     if tree.is_Float:
-        if not tree.is_finite:
-            raise InputError("it contains a number that is not finite")
+        need(tree.is_finite, InputError("it contains a number that is not finite"))
         sign, mantissa, exponent, _ = tree._mpf_
         return Number((-1 if sign else 1) * Fraction(int(mantissa)) * Fraction(2) ** int(exponent))
     if kind == "Pi":

@@ -30,7 +30,7 @@ from singimpact.algebra.expressions import (
 )
 from singimpact.algebra.numbers import sign_of
 from singimpact.algebra.rings import EXACT
-from singimpact.inputs import InputError
+from singimpact.inputs import InputError, need
 
 
 class NoExpansion(ArithmeticError):
@@ -58,8 +58,7 @@ class Puiseux:
         ------
         NoExpansion : no term is known.
         """
-        if not self.terms:
-            raise NoExpansion("no term is known")
+        need(self.terms, NoExpansion("no term is known"))
         return self.terms[0]
 
     @property

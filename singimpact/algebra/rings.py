@@ -16,6 +16,7 @@ from singimpact.algebra.expressions import Expression, Root, evaluate, names_in
 from singimpact.algebra.polynomials import PackedPolynomials
 from singimpact.algebra.precision import kept_property
 from singimpact.handed_on import flint, sympy
+from singimpact.inputs import need
 
 
 class Exact:
@@ -37,8 +38,7 @@ class Exact:
         raise ArithmeticError("pi is not rational")
 
     def power(self, base: Any, exponent: Fraction) -> Any:
-        if exponent.denominator != 1:
-            raise ArithmeticError("a root is not rational")
+        need(exponent.denominator == 1, ArithmeticError("a root is not rational"))
         return base ** int(exponent)
 
     def call(self, function: str, argument: Any) -> Any:

@@ -23,7 +23,7 @@ from singimpact.branches.resting import Released, Releases, Return
 from singimpact.dynamics.long_run import lift_offs
 from singimpact.dynamics.threshold import threshold
 from singimpact.flights.impact_map import checked_digits
-from singimpact.inputs import InputError, checked_keywords, refuse, whole
+from singimpact.inputs import InputError, checked_keywords, refuse, require, whole
 from singimpact.oscillator.model import Oscillator, require_rebound
 from singimpact.oscillator.moving_number import RESTITUTION, value_of, with_number
 from singimpact.result import Result, Results
@@ -204,8 +204,7 @@ def border_orbits(
 
 def _ends(osc: Oscillator, over: str, between: Any) -> tuple[float, float]:
     low, high = interval(over, None, value_of(osc, over)) if between is None else window_ends(over, between)
-    if over == RESTITUTION and not 0 < low < high <= 1:
-        raise refuse("between", between, "two numbers low < high in (0, 1)")
+    require(over != RESTITUTION or 0 < low < high <= 1, "between", between, "two numbers low < high in (0, 1)")
     if over == RESTITUTION and between is None:
         high = min(high, 1 - 1e-3)
     for value in (low, high):

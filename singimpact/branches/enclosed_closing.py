@@ -22,6 +22,7 @@ from singimpact.flights.enclosures.equation import Equation, Refused, programs_o
 from singimpact.flights.enclosures.motion import CarriedMotion, Met, Start
 from singimpact.flights.enclosures.tube import Tube, centre, divided, narrowed
 from singimpact.handed_on import flint
+from singimpact.inputs import need
 from singimpact.oscillator.model import Oscillator
 
 BITS = 30
@@ -130,8 +131,7 @@ class ClosingBoxes:
                 return None if visible and met.speed > 0 else met
             first = left.lower()
             stop = length if length <= first else first
-            if not stop > 0:
-                raise Refused("the end of the last flight is not within a step")
+            need(stop > 0, Refused("the end of the last flight is not within a step"))
             # all members are behind the wall here: none of them is an orbit
             if visible and height(stop) < 0:
                 return None

@@ -28,6 +28,7 @@ from singimpact.dynamics.invariant_arcs import model_step
 from singimpact.flights.enclosures.certified_hit import ProvedImpact
 from singimpact.flights.enclosures.equation import Refused
 from singimpact.handed_on import flint
+from singimpact.inputs import need
 from singimpact.oscillator.model import Oscillator
 
 
@@ -152,12 +153,10 @@ def _enclosed(
     own = [max(KRAWCZYK.margin * upper(component), small) for component in step]
     tight = operator.tight(at, step, own)
     for end, radius in ((at[0], own[0]), (at[-1], own[-1])):
-        if not abs(end) > radius:
-            raise Refused("an end of the orbit is not told from the saddle")
+        need(abs(end) > radius, Refused("an end of the orbit is not told from the saddle"))
     position = turned + index
     angle = _angle(between, tight, position)
-    if not angle > 0:
-        raise Refused("the angle of W^u and W^s is not told from 0")
+    need(angle > 0, Refused("the angle of W^u and W^s is not told from 0"))
     least = min(radius / unit for radius, unit in zip(own, between.radii(Fraction(1)), strict=True))
     unique = operator.unique_within(at, step, least)
     shown = [(_shown(tau, digits), _shown(v, digits)) for tau, v in between.states(tight)]
@@ -250,8 +249,7 @@ class _Between:
         period = float(leave.map.period)
         places = np.vstack([[float(part) for part in leave.centre], start[1:-1], [float(part) for part in come.centre]])
         landed = model_step(leave.saddle.oscillator, places[:-1])
-        if not np.isfinite(landed).all():
-            raise Refused("a flight of the orbit has no end")
+        need(np.isfinite(landed).all(), Refused("a flight of the orbit has no end"))
         # the first state moves by less than half a period until it is z_0
         self.turns = [int(turn) for turn in np.rint((landed[:, 0] - places[1:, 0]) / period)]
 

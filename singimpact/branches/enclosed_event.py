@@ -30,6 +30,7 @@ from singimpact.branches.krawczyk import KRAWCZYK, Krawczyk, Point
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.flights.enclosures.equation import Refused
 from singimpact.handed_on import flint
+from singimpact.inputs import need
 from singimpact.oscillator.model import Oscillator
 from singimpact.result import Result, in_words
 
@@ -233,8 +234,7 @@ class _Curve:
         values = test(one), test(other)
         assert operator.held is not None
         for _ in range(SETTINGS.secants):
-            if values[0] == values[1]:
-                raise Refused("the test of the event does not vary next to it")
+            need(values[0] != values[1], Refused("the test of the event does not vary next to it"))
             gap = other[operator.held] - one[operator.held]
             shift = as_rational(balls.rational(values[1] * gap / (values[0] - values[1])))
             one, other = other, operator.solved(operator.moved(other, shift))

@@ -17,7 +17,7 @@ from singimpact.branches.events.orbit_state import OrbitState
 from singimpact.branches.orbit_curve import SETTINGS, OrbitCurve, places
 from singimpact.branches.orbits import OfImpacts
 from singimpact.branches.solutions import AnyClosing, closing_of, point_of
-from singimpact.inputs import checked_keywords, refuse, takes_two_walls, whole
+from singimpact.inputs import checked_keywords, refuse, require, takes_two_walls, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION, UPPER, value_of, with_number
 from singimpact.result import Result, numbered
@@ -157,20 +157,17 @@ def event_curve(
     if not isinstance(event, Event) or event.described.look is None:
         *labels, last = (kind.label for kind in KINDS if kind.look is not None)
         raise refuse("event", event, f"a {', '.join(labels)} or {last} among the events of a branch")
-    if len(over) != 2 or over[0] == over[1]:
-        raise refuse("over", over, "two different numbers of the model")
+    require(len(over) == 2 and over[0] != over[1], "over", over, "two different numbers of the model")
     whole("points", points, 2, 10**6)
     orbit = event.orbit
     osc = orbit.oscillator
     for name in over:
         osc = with_number(osc, name)
     intervals = (None, None) if between is None else tuple(between)
-    if len(intervals) != 2:
-        raise refuse("between", between, "a pair of intervals, one for each number")
+    require(len(intervals) == 2, "between", between, "a pair of intervals, one for each number")
     values = [value_of(osc, name) for name in over]
     ends = [interval(name, limits, value) for name, limits, value in zip(over, intervals, values, strict=True)]
-    if not orbit.n:
-        raise refuse("event", event, "an event of an orbit with impacts: event.others()[0] has one that grazes alike")
+    require(orbit.n, "event", event, "an event of an orbit with impacts: event.others()[0] has one that grazes alike")
     full = closing_of(osc, orbit.word, orbit.k, over)
     closing, at = full, np.concatenate([point_of(full, orbit), values])
     if event.described is PITCHFORK:  # half of the orbit doubles there

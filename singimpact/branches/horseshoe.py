@@ -34,6 +34,7 @@ from singimpact.branches.saddle_cones import Cones, Pair, derivative_over, image
 from singimpact.flights.derivative import derivative
 from singimpact.flights.enclosures.equation import Refused
 from singimpact.handed_on import flint
+from singimpact.inputs import need
 from singimpact.oscillator.model import Oscillator
 from singimpact.result import Result
 
@@ -224,8 +225,7 @@ class _Route:
         offset = inverse * flint.arb_mat([[entry] for entry in off])
         M = inverse * derivative_over(self.map, one.centre, one.box, impacts) * self.cones.matrix(one.frame)
         u, s, m12, m21, m22 = (upper(entry) for entry in (offset[0, 0], offset[1, 0], M[0, 1], M[1, 0], M[1, 1]))
-        if M[0, 0].contains(0) or not M[0, 0].is_finite():
-            raise Refused("a set is not shown to be stretched")
+        need(not M[0, 0].contains(0) and M[0, 0].is_finite(), Refused("a set is not shown to be stretched"))
         return _Image(u, s, least(M[0, 0]), m12, m21, m22)
 
     def _beside(self, first: CrossedSet, seen: _Image, home: CrossedSet) -> Fraction:

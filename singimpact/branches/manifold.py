@@ -15,7 +15,7 @@ from singimpact.branches.solutions import orbit_period
 from singimpact.dynamics.growth import LEFT, LOST, NATURAL, TORN, Carried, Piece
 from singimpact.dynamics.invariant_arcs import before, model_step
 from singimpact.flights.results import counted
-from singimpact.inputs import checked_keywords, refuse
+from singimpact.inputs import checked_keywords, refuse, require
 from singimpact.oscillator.wall_acceleration import acceleration, largest_push
 from singimpact.result import Result
 from singimpact.surface.curve import RESOLUTION, STATES, Curve, Mark, Window
@@ -204,8 +204,7 @@ def manifold(
     if not highest > fastest:
         raise refuse("v", v, f"a velocity above the largest of the orbit, {fastest:.6g}")
     longest = as_float(constant("length", length))
-    if not longest > 0:
-        raise refuse("length", length, "a number > 0, in sides of the window")
+    require(longest > 0, "length", length, "a number > 0, in sides of the window")
     window = Window.read((0, period), (0, highest), resolution, STATES)
     with counted() as count:
         grown = _Grown(saddle, bool(stable), window, longest)

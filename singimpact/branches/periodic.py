@@ -33,7 +33,7 @@ from singimpact.branches.wall_closing import closed_words, closing_of_word, word
 from singimpact.flights.enclosures.equation import Refused
 from singimpact.flights.family import family
 from singimpact.flights.impact_map import checked_digits
-from singimpact.inputs import InputError, refuse
+from singimpact.inputs import InputError, refuse, require
 from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator, require_rebound
 from singimpact.status import Status
@@ -160,8 +160,7 @@ def _window(v: Any) -> tuple[Fraction, Fraction]:
         low, high = (rational_near(constant("v", part), 64) for part in v)
     except (TypeError, ValueError):
         raise refuse("v", v, "two numbers (low, high), 0 <= low < high") from None
-    if not 0 <= low < high:
-        raise refuse("v", v, "two numbers (low, high), 0 <= low < high")
+    require(0 <= low < high, "v", v, "two numbers (low, high), 0 <= low < high")
     return low, high
 
 

@@ -33,6 +33,7 @@ from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.flights.enclosures.certified_hit import ProvedImpact
 from singimpact.flights.enclosures.equation import Refused
 from singimpact.handed_on import flint
+from singimpact.inputs import need
 
 Pair = tuple[Fraction, Fraction]
 
@@ -112,8 +113,7 @@ class Cones:
         M = self.matrix(self.coordinates) * self._derivative(spread) * self.matrix(self.frame)
         (m11, m12), (m21, m22) = [[abs(entry) for entry in row] for row in M.table()]
         far, m12, m21, m22 = flint.arb(m11.lower()), *(flint.arb(entry.upper()) for entry in (m12, m21, m22))
-        if not far > 1:
-            raise Refused("the return map is not shown to stretch next to the saddle")
+        need(far > 1, Refused("the return map is not shown to stretch next to the saddle"))
         least = self.map.balls.rational(Fraction(1, 2**self.map.balls.bits))
         L_u, L_s = (flint.arb((2 * entry / (far - 1) + least).upper()) for entry in (m21, m12))
         expansion, contraction = far - L_u * m12, m22 + L_s * m21
@@ -183,8 +183,7 @@ def _eigenvectors(matrix: Any) -> list[list[Fraction]]:
     a, b, c, d = (entry.mid() for entry in matrix.entries())
     half = (a + d) / 2
     under = half * half - (a * d - b * c)
-    if not under > 0:
-        raise Refused("the multipliers are not shown to be real and different")
+    need(under > 0, Refused("the multipliers are not shown to be real and different"))
     far = half + under.sqrt() if half > 0 else half - under.sqrt()
     near = (a * d - b * c) / far
     columns = []

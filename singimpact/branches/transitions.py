@@ -18,7 +18,7 @@ from singimpact.branches.events import Event
 from singimpact.branches.orbits import PeriodicOrbit, same_states
 from singimpact.branches.periodic import periodic
 from singimpact.dynamics.basins_of_attraction import Basins, basins
-from singimpact.inputs import InputError, checked_keywords, refuse, takes_two_walls, whole
+from singimpact.inputs import InputError, checked_keywords, refuse, require, takes_two_walls, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import RESTITUTION, with_number
 from singimpact.oscillator.wall_acceleration import largest_push
@@ -168,8 +168,7 @@ class OrbitTransitions(Transitions):
         others = [abs(other.value - chosen.value) for other in self if other.value != chosen.value]
         most = min([SETTINGS.apart[0] * (self.ends[1] - self.ends[0]), *(SETTINGS.apart[1] * gap for gap in others)])
         step = most if apart is None else as_float(constant("apart", apart))
-        if not step > 0:
-            raise refuse("apart", apart, "a number > 0")
+        require(step > 0, "apart", apart, "a number > 0")
         models = [_moved(self.oscillator, self.over, chosen.value + side * step) for side in (-1, 1)]
         if models[0].period is None:
             raise InputError("the forcing has no period: basins need one")

@@ -27,7 +27,7 @@ from singimpact.cli.output import (
     save,
     whole_option,
 )
-from singimpact.inputs import InputError
+from singimpact.inputs import InputError, need
 from singimpact.oscillator.moving_number import value_of
 from singimpact.result import one_table
 from singimpact.store import require_writable, write_table
@@ -412,8 +412,7 @@ def _made(model: Any, kind: str, near: State, options: dict[str, Any]) -> Any:
         wanted = options["event"] or ((PERIOD_DOUBLING.name, *options["doubling"]) if options["doubling"] else None)
         return certify((_event(orbit, *wanted) if wanted else orbit).certified(digits))
     crossings = homoclinic_points(_orbit(model, kind, options[kind], near, saddle=True))
-    if not len(crossings):
-        raise InputError("no homoclinic orbit of the saddle is found")
+    need(len(crossings), InputError("no homoclinic orbit of the saddle is found"))
     return certify(crossings[0].horseshoe())
 
 

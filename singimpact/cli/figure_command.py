@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from singimpact.cli.output import PICTURES, as_json_text, save_once
-from singimpact.inputs import refuse
+from singimpact.inputs import refuse, require
 from singimpact.paper.figures import ACCEPTED, BEYOND, FIGURES, kept_picture
 from singimpact.progress import ProgressLine
 from singimpact.store import folder, require_writable, write_text
@@ -73,8 +73,7 @@ def _targets(output: str, numbers: list[int | str], kind: str) -> list[Path]:
         raise refuse("output", output, "a folder, or for one figure a file name ending in .png, .pdf or .svg")
     if suffix not in PICTURES:
         return [folder(output) / f"figure{str(number).zfill(2)}.{kind}" for number in numbers]
-    if len(numbers) > 1:
-        raise refuse("output", output, "a folder: these are several figures")
+    require(len(numbers) <= 1, "output", output, "a folder: these are several figures")
     require_writable(output)
     return [Path(output)]
 

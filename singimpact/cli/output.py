@@ -9,7 +9,7 @@ import click
 from click.core import ParameterSource
 
 from singimpact import cache
-from singimpact.inputs import refuse
+from singimpact.inputs import refuse, require
 from singimpact.result import as_json
 from singimpact.status import Status
 from singimpact.store import cache_folder, require_writable, write_text, written
@@ -182,8 +182,7 @@ def suffix_of(output: str) -> str:
     InputError : not .png, .pdf or .svg.
     """
     suffix = Path(output).suffix.lower()
-    if suffix not in PICTURES:
-        raise refuse("output", output, "a file name ending in .png, .pdf or .svg")
+    require(suffix in PICTURES, "output", output, "a file name ending in .png, .pdf or .svg")
     return suffix
 
 

@@ -17,7 +17,7 @@ from singimpact.algebra.balls import Balls
 from singimpact.algebra.precision import balls_at
 from singimpact.codegen.polynomial_source import RATIO_SOURCE, Coefficient, Exponents, function_source, module_source
 from singimpact.documents.document_steps import Section, Step
-from singimpact.inputs import InputError, unknown
+from singimpact.inputs import InputError, need, unknown
 from singimpact.oscillator.model import Oscillator
 from singimpact.theory import chatter_limit, dynamics_on_gamma, fibre, gamma, normal_form, v_c
 from singimpact.theory.contact_points import Place, place, points_of
@@ -356,8 +356,7 @@ def _ratio(value: Any) -> Fraction:
     if hasattr(value, "_mpf_"):  # sympy would round it to the precision of mpmath at this moment
         return Fraction(to_str(value._mpf_, 30))
     exact = sympy.sympify(value)
-    if exact.free_symbols:
-        raise InputError("numpy source needs numbers: a coefficient of this series has symbols")
+    need(not exact.free_symbols, InputError("numpy source needs numbers: a coefficient of this series has symbols"))
     return Fraction(int(exact.p), int(exact.q)) if exact.is_Rational else Fraction(str(sympy.N(exact, 30)))
 
 

@@ -36,7 +36,7 @@ from singimpact.dynamics.orbit import Orbit, dropped_orbit, orbit
 from singimpact.dynamics.phases import Times, phases_of
 from singimpact.dynamics.settling import Study
 from singimpact.dynamics.synchrony import meets
-from singimpact.inputs import checked_keywords, refuse, require_known, require_memory, takes_two_walls
+from singimpact.inputs import checked_keywords, refuse, require, require_known, require_memory, takes_two_walls
 from singimpact.oscillator.model import Oscillator, require_model
 from singimpact.oscillator.moving_number import with_number
 from singimpact.oscillator.period import moving_in_time, oscillates
@@ -195,8 +195,7 @@ def bifurcation(
     if any(over in names_in(tree) for tree in moving_in_time(model.f, model.g).values()):  # of others it is one
         periods = np.array([as_float(model.replace(**{over: value}).period) for value in values.tolist()])
     if direction is not None:
-        if direction not in WAYS:
-            raise refuse("direction", direction, "'up', 'down' or 'both'")
+        require(direction in WAYS, "direction", direction, "'up', 'down' or 'both'")
         if any(value is not None for value in sweeping.values()):
             raise refuse("direction", direction, "it without executor= and output=: its orbits are flown in a row")
         values, periods = (

@@ -16,7 +16,7 @@ from singimpact.flights.results import JUDGED, Step
 from singimpact.flights.states import States
 from singimpact.flights.walls import at_walls, wall_codes
 from singimpact.handed_on import Study
-from singimpact.inputs import InputError, checked_methods, refuse, require_memory, whole
+from singimpact.inputs import InputError, checked_methods, need, refuse, require_memory, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION, UPPER, with_number
 from singimpact.status import Status, status_array
@@ -44,8 +44,7 @@ class OscillatorFamily:
     """
 
     def __init__(self, osc: Oscillator, numbers: Mapping[str, Any]) -> None:
-        if not numbers:
-            raise InputError("over() names no number of the model: give arrays by name, over(omega=[2, 3])")
+        need(numbers, InputError("over() names no number of the model: give arrays by name, over(omega=[2, 3])"))
         for name in numbers:
             osc = with_number(osc, name)
         arrays = {name: float_array(name, values) for name, values in numbers.items()}

@@ -334,8 +334,8 @@ class _Run:
                 "the power q < 1 of the speed by which chatter comes to rest"
             )
         self.growth, self.before, self.start = Growth(lives), np.zeros(self.size, int), np.zeros((2, self.size))
-        # without rebound: the last phases of each orbit at which it begins from rest, nan at those with a velocity
-        self.phases: deque[Array] = deque(maxlen=SETTINGS.period + 1 if osc.plastic else 0)
+        # without rebound: the last times at which each orbit began from rest, nan where it had a velocity
+        self.rests: deque[Array] = deque(maxlen=SETTINGS.period + 1 if osc.plastic else 0)
         self.begin()
 
     def begin(self, chosen: Any = slice(None)) -> None:
@@ -359,7 +359,7 @@ class _Run:
             block = max(SETTINGS.block // going.size, SETTINGS.period)
             stretch = lives.advance(np.minimum(block, most[going] - done[going]), going)
             done[going] += np.maximum(lives.flown[going] - before, 1)
-            self.phases.append(np.where(lives.v == 0, lives.phase, np.nan))
+            self.rests.append(np.where(lives.v == 0, lives.time(), np.nan))
             if keep:
                 self.growth.add(stretch)
             for single in stretch.singles:
@@ -379,7 +379,7 @@ class _Run:
             open_ &= (self.before < SETTINGS.transient) & (self.lives.status == 0) & ~self.over
             if stretch is not None:
                 open_[stretch.chosen[_repeats(self.lives, stretch)]] = False
-            if self.phases:
+            if self.rests:
                 open_ &= ~self._from_the_same_rest()
             block *= 2
         result, open_ = np.zeros((self.size, 14)), np.ones(self.size, bool)
@@ -398,14 +398,12 @@ class _Run:
         return result
 
     def _from_the_same_rest(self) -> Array:
-        """Whether the phase at which orbits begin from rest is one of those before."""
-        *before, last = self.phases
+        """Whether orbits begin from rest at the phase of an earlier rest, later than it: those that wait do not."""
+        *before, last = self.rests
         if self.lives.members.osc.autonomous:
             return np.isfinite(last)
-        off = (np.reshape(before, (-1, last.size)) - last) / np.where(
-            np.isfinite(self.lives.unit), self.lives.unit, np.nan
-        )
-        return np.asarray((np.abs(off - np.rint(off)) < SETTINGS.close).any(axis=0))
+        turns = (last - np.reshape(before, (-1, last.size))) / self.lives.unit
+        return np.asarray(((np.abs(turns - np.rint(turns)) < SETTINGS.close) & (turns > 0.5)).any(axis=0))
 
     def table(self) -> Array:
         """The fields of `Lyapunov`, one row for each orbit."""

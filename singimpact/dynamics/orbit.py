@@ -23,7 +23,7 @@ from singimpact.flights.orbits import orbit_segment
 from singimpact.flights.results import Step
 from singimpact.flights.states import States
 from singimpact.flights.walls import wall_codes
-from singimpact.inputs import InputError, refuse, shown, whole
+from singimpact.inputs import InputError, refuse, require, shown, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.result import Result, plain
@@ -235,8 +235,7 @@ def orbit(osc: Oscillator, tau: Any, v: Any, impacts: int = 200, *, horizon: Any
     if states.v[0] > 0:
         states = states.in_period(osc)
     codes = wall_codes(osc, wall)
-    if codes.shape:
-        raise refuse("wall", wall, "one wall: an orbit starts from one state")
+    require(not codes.shape, "wall", wall, "one wall: an orbit starts from one state")
     run = _Run(osc, (float(states.tau[0]), float(states.v[0])), horizon, most, int(codes))
     if isinstance(states.turns, float):
         run.given = states.given(0)

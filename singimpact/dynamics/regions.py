@@ -18,7 +18,7 @@ from singimpact.dynamics.families import OscillatorFamily, in_parts
 from singimpact.dynamics.lives import Lives, Stretch
 from singimpact.dynamics.lyapunov import exponents_of_states
 from singimpact.flights.members import SETTINGS as MEMBERS
-from singimpact.inputs import checked_keywords, refuse, require_memory, takes_two_walls, whole
+from singimpact.inputs import checked_keywords, refuse, require, require_memory, takes_two_walls, whole
 from singimpact.oscillator.model import Oscillator, require_model
 from singimpact.oscillator.moving_number import with_number
 from singimpact.status import Status
@@ -165,8 +165,7 @@ def regions(
     """
     require_model("osc", osc)
     names = tuple(over)
-    if len(names) != 2 or names[0] == names[1]:
-        raise refuse("over", over, "two different numbers of the model")
+    require(len(names) == 2 and names[0] != names[1], "over", over, "two different numbers of the model")
     for name in names:
         osc = with_number(osc, name)
     if osc.period is None:

@@ -18,7 +18,7 @@ from singimpact.contact.points import tangency_points
 from singimpact.dynamics.chatter import chatter_limit
 from singimpact.dynamics.invariant_arcs import model_step
 from singimpact.flights.rebound_law import rebound
-from singimpact.inputs import InputError
+from singimpact.inputs import InputError, need
 from singimpact.oscillator.model import Oscillator, require_model
 from singimpact.result import Result
 from singimpact.status import Status
@@ -68,8 +68,7 @@ class SwanConfiguration(Result):
     def _bitangent(self) -> Point:
         """The flight from rest to rest, launched before A."""
         at = [tuple(place) for curve in self.surface.zero_set for place in curve.marked("rest") if place[1] > 0]
-        if not at:
-            raise InputError("no flight near the swan starts and ends at rest")
+        need(at, InputError("no flight near the swan starts and ends at rest"))
         tau, t = min(at, key=lambda place: float(place[1]))
         return float(tau), float(t)
 
@@ -199,8 +198,7 @@ def swan_configuration(model: Oscillator, near: Any = None) -> SwanConfiguration
         points = [(tau + n * period, kind) for n in (-1, 0, 1) for tau, kind in points]
     points.sort()
     pairs = list(pairwise(points))
-    if not pairs:
-        raise InputError("a_c of this model has fewer than two tangency points: there is no unfolded swan")
+    need(pairs, InputError("a_c of this model has fewer than two tangency points: there is no unfolded swan"))
     centre = None if near is None else as_float(constant("near", near))
 
     def distance(pair: Any) -> float:

@@ -12,7 +12,7 @@ from singimpact.flights.enclosures.certified_hit import Launch, certified_hit
 from singimpact.flights.enclosures.equation import NoHit, Refused
 from singimpact.flights.horizons import horizon_of
 from singimpact.flights.impact_map import checked_digits
-from singimpact.inputs import InputError, refuse, unknown
+from singimpact.inputs import InputError, require, unknown
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION
 from singimpact.result import Result, in_words
@@ -72,8 +72,7 @@ def enclosed_impact(
     _check(osc, widths)
     places, wanted = (constant("tau", tau), constant("v", v)), checked_digits(digits)
     names = ("tau", "v", *(name for name in widths if name not in ("tau", "v")))
-    if sign_of(places[1]) <= 0:
-        raise refuse("v", v, "a velocity above 0, just after an impact")
+    require(sign_of(places[1]) > 0, "v", v, "a velocity above 0, just after an impact")
     launch = Launch(*places, 1, widths)
     try:
         proof = certified_hit(osc, launch, wanted, Fraction(horizon_of(osc, horizon)), derivative=True)

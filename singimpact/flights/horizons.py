@@ -14,7 +14,7 @@ from singimpact.algebra.rings import DOUBLES
 from singimpact.flights.kernels.hits import UNIT as EPSILON
 from singimpact.flights.limits import LIMITS
 from singimpact.flights.model_numbers import fastest_rate, fastest_rates, has_table, recurrence_of, valued
-from singimpact.inputs import refuse
+from singimpact.inputs import refuse, require
 from singimpact.oscillator.linear import LinearForm, form_of
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import CLEARANCE, period_over
@@ -74,8 +74,7 @@ def horizon_of(osc: Oscillator, horizon: Any) -> float:
     """
     if horizon is not None:
         tree = constant("horizon", horizon)
-        if sign_of(tree) <= 0:
-            raise refuse("horizon", horizon, "a positive time")
+        require(sign_of(tree) > 0, "horizon", horizon, "a positive time")
         longest = LIMITS.longest_radians / fastest_rate(osc)
         if as_float(tree) > longest:
             raise refuse("horizon", horizon, f"at most {longest:.3g}, 1e7 radians of the model's fastest motion")

@@ -13,7 +13,7 @@ from singimpact.algebra.numbers import compare, constant, tree_of
 from singimpact.algebra.puiseux import Puiseux
 from singimpact.algebra.rings import to_sympy
 from singimpact.handed_on import sympy
-from singimpact.inputs import InputError, checked_methods, refuse, require_known, shown, unknown
+from singimpact.inputs import InputError, checked_methods, refuse, require, require_known, shown, unknown
 from singimpact.oscillator import rebound
 from singimpact.oscillator.period import checked_period, moving_in_time, period_of
 from singimpact.status import wall_of
@@ -114,8 +114,7 @@ class Oscillator:
             else rebound.read(restitution, dict(parameters), "upper_restitution")
         )
         for name, tree in (("restitution", self.restitution), ("upper_restitution", law)):
-            if str(tree) == "0":
-                raise refuse(name, 0, "a number above 0 beside upper=: two walls need rebounds")
+            require(str(tree) != "0", name, 0, "a number above 0 beside upper=: two walls need rebounds")
         return height, law
 
     def __setattr__(self, name: str, value: Any) -> None:

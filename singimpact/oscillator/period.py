@@ -29,7 +29,7 @@ from singimpact.algebra.expressions import (
     subtract,
 )
 from singimpact.algebra.numbers import Array, compare, constant, rational_near
-from singimpact.inputs import InputError, refuse, shown
+from singimpact.inputs import InputError, require, shown
 
 
 def affine(tree: Expression, names: Sequence[str]) -> tuple[Expression, ...] | None:
@@ -143,8 +143,7 @@ def oscillates(*trees: Expression) -> bool:
 def checked_period(trees: Mapping[str, Expression], value: Any, computed: Expression | None) -> Expression:
     """A period the caller gives, refused when f or g does not repeat with it at some sample times."""
     period = constant("period", value)
-    if compare(period, 0) <= 0:
-        raise refuse("period", value, "a positive number")
+    require(compare(period, 0) > 0, "period", value, "a positive number")
     for name, tree in trees.items():
         if "t" in names_in(tree) and period != computed and not _repeats(tree, period):
             later = "g(t + period) = g(t)" if name == "g" else "f(x, xdot, t + period) = f(x, xdot, t)"

@@ -8,7 +8,7 @@ from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.expressions import Expression, Name, evaluate, multiply, names_in, number, substitute
 from singimpact.algebra.numbers import compare, constant, tree_of
 from singimpact.algebra.puiseux import Puiseux, expansion
-from singimpact.inputs import InputError, refuse
+from singimpact.inputs import InputError, refuse, require
 
 ACCEPTED = (
     "a number from 0 to 1, or an expression rho in v with rho(0) = 0 and -1 <= rho'(0) < 0, such as -0.8*v + v**2"
@@ -38,8 +38,7 @@ def read(value: Any, parameters: dict[str, Expression], name: str = "restitution
             raise
         raise refuse(name, value, ACCEPTED) from error
     good = _good(substitute(tree, parameters)) if "v" in names_in(tree) else compare(tree, 0) >= 0 >= compare(tree, 1)
-    if not good:
-        raise refuse(name, value, ACCEPTED)
+    require(good, name, value, ACCEPTED)
     return tree
 
 

@@ -15,7 +15,7 @@ from singimpact.branches.event_curve import EventCurve
 from singimpact.branches.events import KINDS, Event, kind_of
 from singimpact.branches.solutions import orbit_period
 from singimpact.dynamics.bifurcation_diagram import Bifurcation
-from singimpact.inputs import InputError, refuse
+from singimpact.inputs import InputError, refuse, require
 from singimpact.scenes.label_places import legend_below, legend_entries, legend_mark, place_labels
 from singimpact.scenes.style import (
     BLACK,
@@ -63,8 +63,7 @@ def draw_branches(branches: Sequence[Branch], axes: Axes, height: str = "v") -> 
     height : "v", velocities after the impacts, or "phase", their phases in periods. Branches of orbits without impact
         lie at v = 0; where there are no others the lowest x - c is shown.
     """
-    if height not in ("v", "phase"):
-        raise refuse("height", height, "'v' or 'phase'")
+    require(height in ("v", "phase"), "height", height, "'v' or 'phase'")
     names = sorted({branch.over for branch in branches})
     if len(names) > 1:
         raise refuse("branches to plot", f"over {' and '.join(names)}", "branches over one number")

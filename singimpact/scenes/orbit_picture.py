@@ -18,7 +18,7 @@ from singimpact.dynamics.fit import Fit
 from singimpact.dynamics.orbit import Orbit, Section, orbit as flown
 from singimpact.dynamics.release_map import ReleaseMap
 from singimpact.flights.flight_path import path
-from singimpact.inputs import InputError, checked_keywords, refuse, takes_two_walls, whole
+from singimpact.inputs import InputError, checked_keywords, refuse, require, takes_two_walls, whole
 from singimpact.scenes.label_places import legend_below, legend_entries
 from singimpact.scenes.style import BLACK, BLUE, GREY, HATCH, SHORT_DASHES, VERMILLION, WALL, WHITE
 from singimpact.store import written
@@ -314,8 +314,7 @@ class OrbitAnimation:
         InputError : another ending, or ffmpeg is not there.
         """
         ending = FilePath(path).suffix.lower()
-        if ending not in (".gif", ".html", ".mp4"):
-            raise refuse("path", path, "a file name ending in .gif, .html or .mp4")
+        require(ending in (".gif", ".html", ".mp4"), "path", path, "a file name ending in .gif, .html or .mp4")
         content = self._mp4(path) if ending == ".mp4" else self._gif()
         if ending == ".html":
             content = f"<!DOCTYPE html><meta charset='utf-8'>{self._repr_html_()}".encode()

@@ -21,7 +21,7 @@ from singimpact.contact.contact import NAMED_ORDERS, Contact, acceleration_jet, 
 from singimpact.contact.points import TangencyPoint, tangency_points
 from singimpact.contact.zero_ahead import ContactZero
 from singimpact.handed_on import flint, sympy
-from singimpact.inputs import InputError, refuse, require_known
+from singimpact.inputs import InputError, need, refuse, require, require_known
 from singimpact.oscillator.model import Oscillator, require_smooth_rho
 from singimpact.oscillator.rho_series import TASK, series_of_rho
 
@@ -140,8 +140,7 @@ def points_of(model: Oscillator, tau: Any) -> list[int]:
     if tau is not None:
         return [next(j for j in (2, 1, 0) if j == 0 or _is_place(model, j, tau))]
     found = [j for j in KINDS if _is_place(model, j, None)]
-    if not found:
-        raise InputError("a_c of this model has no tangency or swan point with an invariant curve: give tau")
+    need(found, InputError("a_c of this model has no tangency or swan point with an invariant curve: give tau"))
     return found
 
 
@@ -195,8 +194,7 @@ def multiplier(j: int, r: Expression, bits: int | None = None) -> Any:
     >>> multiplier(1, number(Fraction(5, 16))), multiplier(1, number(Fraction(1, 3)))
     (Fraction(1, 2), None)
     """
-    if compare(r, 1) >= 0:
-        raise refuse("restitution", r, "a number r < 1 here: at r = 1 no curve is invariant and attracting")
+    require(compare(r, 1) < 0, "restitution", r, "a number r < 1 here: at r = 1 no curve is invariant and attracting")
     if bits is None:
         return _rational_multiplier(j, as_fraction(r))
     with balls_at(bits):

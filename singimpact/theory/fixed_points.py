@@ -19,7 +19,7 @@ from singimpact.algebra.precision import balls_at
 from singimpact.algebra.univariate import real_roots
 from singimpact.contact.contact import contact_order
 from singimpact.handed_on import flint
-from singimpact.inputs import InputError, checked_keywords, refuse, whole
+from singimpact.inputs import InputError, checked_keywords, need, refuse, require, whole
 from singimpact.result import Result, columns_of, in_words
 
 GUARD_BITS = 32  # beside the digits asked for; the loop adds more when a radius is still too large
@@ -144,8 +144,7 @@ def multipliers(at: str | int, r: Any, digits: int = 50) -> Multipliers:
     0.79433819166467074201
     """
     j, rate, precision = contact_order(at), _restitution(r), whole("digits", digits, 1, MOST_DIGITS)
-    if not j:
-        raise refuse("at", at, "a contact order 1..12: at a regular point lambda is r")
+    require(j, "at", at, "a contact order 1..12: at a regular point lambda is r")
     return Multipliers(**_certified(lambda balls: _multipliers(j, rate, balls), precision))
 
 
@@ -201,8 +200,7 @@ def _quotient(j: int) -> flint.fmpz_poly:
     """(P_j^2 - lambda Q_j^2)/(1 - lambda): all its coefficients are positive."""
     P, Q = _P_and_Q(j)
     quotient, rest = divmod(P**2 - flint.fmpz_poly([0, 1]) * Q**2, flint.fmpz_poly([1, -1]))
-    if rest:
-        raise ArithmeticError("P^2 - lambda Q^2 is not divisible by 1 - lambda")
+    need(not rest, ArithmeticError("P^2 - lambda Q^2 is not divisible by 1 - lambda"))
     return quotient
 
 

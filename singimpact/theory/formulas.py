@@ -17,7 +17,7 @@ from singimpact.algebra.rings import DOUBLES, EXACT
 from singimpact.algebra.univariate import precision_of
 from singimpact.contact.contact import Contact, contact_order, derivative_name
 from singimpact.handed_on import sympy
-from singimpact.inputs import InputError, checked_keywords, refuse, whole
+from singimpact.inputs import InputError, checked_keywords, refuse, require, whole
 from singimpact.oscillator.model import require_smooth_rho
 from singimpact.oscillator.rho_series import TASK
 from singimpact.theory.completion import by_velocity, rho_names, symbolic_completion, symbolic_curve
@@ -273,8 +273,7 @@ def _completed(where: Place, order: int, ring: Any) -> dict[int, Any]:
 
 def _curved(at: str | int) -> int:
     j = contact_order(at)
-    if not j:
-        raise refuse("at", at, "'tangency', 'swan' or a contact order 1..12: at a regular point ask for fibre")
+    require(j, "at", at, "'tangency', 'swan' or a contact order 1..12: at a regular point ask for fibre")
     return j
 
 

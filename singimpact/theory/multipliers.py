@@ -14,7 +14,7 @@ from singimpact.algebra.derivations import At, motion, substitution
 from singimpact.algebra.gathering import remembered
 from singimpact.algebra.precision import series_of_any_length
 from singimpact.contact.contact import contact_order
-from singimpact.inputs import checked_keywords, refuse
+from singimpact.inputs import checked_keywords, refuse, require
 
 # The homogeneous models x'' = s^j: the leading part of the theory at contact order j, in closed form.
 #
@@ -183,8 +183,7 @@ def minimal_polynomial(quantity: str, at: str | int = "tangency") -> Any:
     above = sympy.fraction(sympy.together(r_of_lambda(j) - r))[0]
     if quantity == "lambda":
         return sympy.Poly(above.subs(lambda_, x), x, r)
-    if quantity != "mu":
-        raise refuse("quantity", quantity, "'lambda' or 'mu'")
+    require(quantity == "mu", "quantity", quantity, "'lambda' or 'mu'")
     numerator, denominator = sympy.fraction(mu_of_lambda(j))
     resultant = sympy.resultant(above, sympy.expand(x * denominator - numerator), lambda_)
     factors = [factor for factor, _ in sympy.factor_list(resultant, x, r)[1] if factor.has(x) and factor.has(r)]
@@ -210,8 +209,7 @@ def series(quantity: str, end: int, order: int, at: str | int = "tangency") -> S
     ['1', '-3/5', '-3/25']
     """
     j = _order(at)
-    if end not in (0, 1):
-        raise refuse("end", end, "0 or 1")
+    require(end in (0, 1), "end", end, "0 or 1")
     if isinstance(order, bool) or not isinstance(order, int) or not 0 <= order <= 200:
         raise refuse("order", order, "a whole number from 0 to 200")
     if quantity not in (*OFFSETS, "mu") or (quantity == "m3") > (j == 1) or (quantity == "m_star") > (j != 1):
@@ -229,8 +227,7 @@ def _numbers(values: fmpq_series, count: int) -> Series:
 
 def _order(at: str | int) -> int:
     j = contact_order(at)
-    if j < 1:
-        raise refuse("at", at, "'tangency', 'swan' or a contact order from 1 on")
+    require(j >= 1, "at", at, "'tangency', 'swan' or a contact order from 1 on")
     return j
 
 

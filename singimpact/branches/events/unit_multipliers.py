@@ -191,7 +191,9 @@ class NeimarkSacker(ReturnMapKind):
         """Strong resonances, by the trace, a coefficient of 0, an impact that grazes."""
         _, one, two = state.characteristic
         tests = {f"1:{q} resonance": one + cosine * two for q, cosine in ((1, 2), (2, -2), (3, -1), (4, 0))}
-        return tests | {"Chenciner": coefficient(state.closing, state.at, False)} | super().degenerate(state, gradient)
+        # the coefficient of a neutral saddle, whose multipliers are real, has no meaning
+        cubic = coefficient(state.closing, state.at, False) if state.characteristic.are_complex else np.nan
+        return tests | {"Chenciner": cubic} | super().degenerate(state, gradient)
 
     def of_return_map(self, total: Any) -> Any:
         """1 - d."""
@@ -218,6 +220,7 @@ def normal_form(orbit: PeriodicOrbit, gentle: int) -> NormalForm:
     return NormalForm(fine, abs(fine - coarse))
 
 
+@np.errstate(divide="ignore", invalid="ignore")
 def coefficient(closing: AnyClosing, at: Array, flips: bool, step: float = STEPS[1]) -> float:
     """The first coefficient of the normal form, c where the period doubles, else the real part of a.
 

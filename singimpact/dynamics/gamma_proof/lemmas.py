@@ -18,6 +18,7 @@ from flint import arb, arb_poly, fmpq
 
 from singimpact.dynamics.gamma_proof.folded import Models, between, symmetric
 from singimpact.dynamics.gamma_proof.gravity import Flights, residual
+from singimpact.inputs import need
 
 
 @dataclass(frozen=True)
@@ -182,8 +183,7 @@ def prove_box(
     bounds = [_cones(relation, grown_series, (a, b), cone, settings) for a, b in pairwise(steps)]
     slope, U0 = _least(strip.rate for strip in bounds) * least, _least(strip.U for strip in bounds)
     Kl = arb((R / (U0 * slope)).upper())
-    if not WIDE * Kl * s0**N < cone[0]:
-        raise Undecided("lemma 2: the bound of |l - L| is wider than the strip")
+    need(WIDE * Kl * s0**N < cone[0], Undecided("lemma 2: the bound of |l - L| is wider than the strip"))
     Kw = arb((Kl * _largest(strip.V for strip in bounds)).upper())
     return BoxProof(
         *ends,
@@ -230,8 +230,7 @@ def _require_agreement(relation: Flights, series: BoxSeries, size: Any) -> None:
     L, j, s0 = series.L, relation.j, relation.s0
     ell = L(s0)
     l1 = L(ell * s0)
-    if not (0 < ell < 1 and 0 < l1 < 1):
-        raise Undecided("the series leaves 0 < l < 1")
+    need(0 < ell < 1 and 0 < l1 < 1, Undecided("the series leaves 0 < l < 1"))
     after, before = relation.hats(ell * s0, l1), relation.hats(s0, ell)
     direct = ell ** (j + 1) * (1 - l1) * after.W - series.r * (1 - ell) * before.U
     if not ((1 - l1) * after.Wl - after.W + after.V).contains(0) or not direct.overlaps(symmetric(size)):
@@ -305,8 +304,7 @@ def _cones(
     to, at = relation.hats(S1, l1), relation.hats(S, ell)
     K = series.gap(S1) / series.gap(S)
     m = 1 - (1 - ell) * K
-    if not (m > -1 and m < 1):
-        raise Undecided("the strip leaves 0 < l < 1")
+    need(m > -1 and m < 1, Undecided("the strip leaves 0 < l < 1"))
     rate = ell**j * K * relation.hats(S1, m).W / at.U
     shifted = (1 - l1) * to.WS - to.V * d1  # d/dS1 of W(S1, L(S1) + y1)
     F1 = -(ell ** (j + 1)) * to.V

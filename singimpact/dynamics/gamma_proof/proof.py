@@ -30,7 +30,7 @@ from singimpact.dynamics.gamma_proof.gravity import (
 )
 from singimpact.dynamics.gamma_proof.lemmas import BoxProof, ProofSettings, Undecided, prove_box, rational
 from singimpact.dynamics.gamma_proof.nonlinear import NonlinearRelation, nonlinear_relation
-from singimpact.inputs import InputError, refuse
+from singimpact.inputs import InputError, need, refuse, require
 from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import sign_of_acceleration
@@ -149,8 +149,7 @@ class CertifiedGamma:
             return from_ball(self._velocity(self._one(), flights, flights.s0), DIGITS)
 
     def _one(self) -> BoxProof:
-        if not self.of_model:
-            raise InputError("gamma is proved for an interval of r here: ask for one restitution")
+        need(self.of_model, InputError("gamma is proved for an interval of r here: ask for one restitution"))
         return self.boxes[0]
 
     def __repr__(self) -> str:
@@ -249,8 +248,7 @@ def _ends(osc: Oscillator, restitution: tuple[Any, Any] | None) -> _Ends:
     if not isinstance(restitution, tuple | list) or len(restitution) != 2:
         raise refuse("restitution", restitution, "two rational numbers (low, high), 0 < low < high < 1")
     low, high = (_rational("restitution", end) for end in restitution)
-    if not 0 < low < high < 1:
-        raise refuse("restitution", restitution, "two rational numbers (low, high), 0 < low < high < 1")
+    require(0 < low < high < 1, "restitution", restitution, "two rational numbers (low, high), 0 < low < high < 1")
     return _Ends(low, high, None)
 
 

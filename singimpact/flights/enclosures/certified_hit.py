@@ -25,6 +25,7 @@ from singimpact.flights.enclosures.equation import (
 from singimpact.flights.enclosures.motion import CarriedMotion, Start
 from singimpact.flights.enclosures.tube import NearGraze, RootAtEnd, Tube, below, centre, divided, first_root
 from singimpact.handed_on import flint
+from singimpact.inputs import need
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import period_over
 
@@ -208,8 +209,7 @@ def motion_from(
     deviations = {name: _radius(launch.radii[name]) for name in names}
     own = Equation(programs, numbers)
     wide = Equation(programs, wide_numbers) if names else own
-    if not v > 0 and launch.removed == 1:
-        raise Refused("the launch velocity is not shown positive")
+    need(v > 0 or launch.removed != 1, Refused("the launch velocity is not shown positive"))
     assert isinstance(v, flint.arb)
     carried = deviations if derivative or any(launch.radii.values()) else None
     start = Start(tau, v, launch.removed)
@@ -329,8 +329,7 @@ def first_hit(motion: Motion, horizon: Any, steps: int, gap: Any = None) -> Ball
         first = motion.launched
         if first:
             inner = divided(value, slope, motion.removed)
-            if not inner[0].polynomial[0] > 0:
-                raise Refused("the launch velocity is not shown positive")
+            need(inner[0].polynomial[0] > 0, Refused("the launch velocity is not shown positive"))
         else:
             inner = value, slope
         shorter, over = length, None

@@ -54,6 +54,7 @@ from singimpact.flights.enclosures.tube import (
     upper,
 )
 from singimpact.handed_on import flint
+from singimpact.inputs import need
 from singimpact.oscillator.model import Oscillator
 
 Jet = list[Any]
@@ -254,10 +255,8 @@ class _JetFlight:
         self.bits, self.name, self.across = bits, launch.names[0], across
         self.gap = flint.arb(0) if osc.upper is None else evaluate(subtract(osc.upper, osc.clearance), {}, Balls(bits))
         self.tau, self.v0, numbers = box_of(osc, launch, bits)
-        if not self.v0 > 0:
-            raise Refused("the launch velocity is not shown positive")
-        if osc.parametric:
-            raise Refused("second derivatives of flights are not enclosed where t occurs in f")
+        need(self.v0 > 0, Refused("the launch velocity is not shown positive"))
+        need(not osc.parametric, Refused("second derivatives of flights are not enclosed where t occurs in f"))
         self.equation, self.time = Equation(jet_programs(osc, self.name), numbers), flint.arb(0)
         self.law = Equation(jet_programs(osc.mirrored, self.name), numbers) if across else self.equation
         zero, one = flint.arb(0), flint.arb(1)
@@ -287,8 +286,7 @@ class _JetFlight:
         time, n = self.tau + self.time, degree_at(self.bits)
         count = n - 1
         X = coefficients(self.equation, (time, self.z[0], self.v[0]), n)
-        if not X[-1].is_finite():
-            raise NotAnalytic("f or g has no power series where the flight goes")
+        need(X[-1].is_finite(), NotAnalytic("f or g has no power series where the flight goes"))
         zero = flint.arb_series([0], prec=count)
         forced = [listed(series, count) for series in self._forcing(flint.arb_series([time, 1], prec=count))]
         rows = [X, *([[flint.arb(0)]] * (len(MONOMIALS) - 1))]
@@ -351,8 +349,7 @@ class _JetFlight:
             value, slope = height(series[0], K), speed(series[0], K)
             launched = bool(self.time == 0)
             inner = divided(value, slope, 1) if launched else (value, slope)
-            if not inner[0].polynomial[0] > 0:
-                raise Refused("the mass is not shown to leave the wall")
+            need(inner[0].polynomial[0] > 0, Refused("the mass is not shown to leave the wall"))
             met, other = inner, below(value, slope, self.gap)
             if self.across:
                 met, other = other, met
@@ -368,8 +365,7 @@ class _JetFlight:
             self.time = self.time + at
             if root is not None:
                 return self._landed()
-            if not self.z[0] > 0:
-                raise Refused("x - c is not shown positive at the end of a step")
+            need(self.z[0] > 0, Refused("x - c is not shown positive at the end of a step"))
             if self.time > float(horizon):
                 raise Refused("no hit comes before the horizon")
         raise Refused(f"{ENCLOSURE.steps} steps do not come to a hit")

@@ -21,6 +21,7 @@ from singimpact.flights.enclosures.equation import Equation, Refused
 from singimpact.flights.enclosures.taylor_step import Column, Step, step
 from singimpact.flights.enclosures.tube import Tube, ball, below, centre, divided, height, narrowed, speed, upper
 from singimpact.handed_on import flint
+from singimpact.inputs import need
 
 Pair = tuple[Any, Any]
 
@@ -207,8 +208,7 @@ class CarriedMotion:
     def _stop_clock(self, length: Any) -> None:
         """To the time of the clock at which the last launch has flown so long."""
         base = centre(length - self.apart)
-        if not base > 0:
-            raise Refused("a box of launch times is longer than a step")
+        need(base > 0, Refused("a box of launch times is longer than a step"))
         self.full = self._from_launch(base + ball(self.apart))
         error = self._to(base, self.full)
         self.box, self.drives = (error[0], error[1]), [-1, -1]
@@ -241,8 +241,7 @@ class CarriedMotion:
         longer = sides[0] if lengths[0] >= lengths[1] else sides[1]
         p, q = centre(longer[0]), centre(longer[1])
         size = float((p * p + q * q).sqrt().mid())
-        if not 0 < size < float("inf"):
-            raise Refused("the frame of the flight is lost")
+        need(0 < size < float("inf"), Refused("the frame of the flight is lost"))
         p, q = (type(p)(float((x / size).mid())) for x in (p, q))
         norm = p * p + q * q
         turned = []
@@ -330,8 +329,7 @@ class CarriedMotion:
                 return self.met(time - self.time)
             left = first - self.time
             stop = length if length <= left else left
-            if not stop > 0:
-                raise Refused("the time is not within a step")
+            need(stop > 0, Refused("the time is not within a step"))
             self.advance(centre(stop))
 
     def hit(self, s: Any, length: Any) -> Met:

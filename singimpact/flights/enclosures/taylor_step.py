@@ -20,6 +20,7 @@ from singimpact.algebra.precision import balls_at
 from singimpact.flights.enclosures.equation import Equation, NotAnalytic, Refused
 from singimpact.flights.enclosures.tube import ball, upper
 from singimpact.handed_on import flint
+from singimpact.inputs import need
 
 
 @dataclass(frozen=True)
@@ -126,8 +127,7 @@ def _made(
 ) -> Step:
     """The step of a degree."""
     X = coefficients(equation, state, degree, removed)
-    if not X[-1].is_finite():
-        raise NotAnalytic("f or g has no power series where the flight goes")
+    need(X[-1].is_finite(), NotAnalytic("f or g has no power series where the flight goes"))
     psi = [column(equation, state[0], X, start, degree) for start in columns]
     with balls_at(STEP.disc_bits):
         sums = [sums_of(polynomial) for polynomial in (X, *psi)]

@@ -13,6 +13,7 @@ from singimpact.flights.enclosures.certified_hit import ENCLOSURE, Launch, bits_
 from singimpact.flights.enclosures.equation import Refused
 from singimpact.flights.enclosures.motion import CarriedMotion, Pair
 from singimpact.flights.enclosures.tube import NearGraze, RootAtEnd, Tube, below, centre, divided, first_root
+from singimpact.inputs import need
 from singimpact.oscillator.model import Oscillator
 
 NEAR = 0.8  # of the time that is left: a step that would end beyond this part of it goes half of the way
@@ -127,8 +128,7 @@ def _touches_in_step(motion: CarriedMotion, inner: tuple[Tube, Tube], left: Any,
                 _above(motion, inner, before, crosses)
             return
         last = last / 2
-    if crosses:
-        raise Refused("the mass is not shown to fall onto the wall at the impact")
+    need(not crosses, Refused("the mass is not shown to fall onto the wall at the impact"))
     raise Refused("the mass is not shown to be driven off the wall where it touches it")
 
 
@@ -159,8 +159,7 @@ def _step(motion: CarriedMotion) -> tuple[tuple[Tube, Tube], Any]:
     if not motion.launched:
         return (value, slope), length
     inner = divided(value, slope, motion.removed)
-    if not inner[0].polynomial[0] > 0:
-        raise Refused("the mass is not shown to leave the wall")
+    need(inner[0].polynomial[0] > 0, Refused("the mass is not shown to leave the wall"))
     return inner, length
 
 

@@ -8,6 +8,7 @@ from math import floor, log10
 from typing import Any
 
 from singimpact.certificates.claims_proofs import check_certificate
+from singimpact.inputs import need
 from singimpact.notebook import table
 
 PROVED = "proved"
@@ -90,8 +91,7 @@ class Check:
             object.__setattr__(self, "kind", MODULO)
         if self.kind not in KINDS or self.kind == "corrected":
             raise ValueError(f"no argument has the kind {self.kind!r}")
-        if self.kind == MODULO and not self.modulo:
-            raise ValueError('"proved modulo" needs the name of a theorem')
+        need(self.kind != MODULO or self.modulo, ValueError('"proved modulo" needs the name of a theorem'))
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from singimpact.algebra.certificates import Certificate, collected
+from singimpact.inputs import need
 from singimpact.paper.claims.claim import (
     IN_MODEL,
     MODULO,
@@ -132,8 +133,7 @@ def _corrected(claim: Claim, failed: Check) -> _Found:
     check, certificates, in_model = _verified(claim, statement.value)
     if not check.holds:
         raise ArithmeticError(f"printed and corrected statement both fail: {failed.evidence}; {check.evidence}")
-    if not failed.witness:
-        raise ArithmeticError("the printed statement fails without a witness")
+    need(failed.witness, ArithmeticError("the printed statement fails without a witness"))
     evidence = f"printed: {failed.evidence}; corrected: {check.evidence}"
     shown = (failed.witness, statement.latex, check.kind, certificates, _tried(claim, statement.value))
     return _Found("corrected", evidence, *shown, in_model, check.modulo)

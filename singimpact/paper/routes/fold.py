@@ -9,6 +9,7 @@ from typing import Any
 import sympy
 
 from singimpact.algebra.derivations import At, substitution
+from singimpact.inputs import need
 from singimpact.paper.routes.equations import equation
 from singimpact.paper.routes.implicit import X, Y, a_symbol, at_contact, p_c, phi_c, r, sigma, t
 
@@ -169,8 +170,7 @@ def fixed_point_factors() -> tuple[sympy.Expr, sympy.Expr]:
     """
     trivial = m - sympy.Rational(3, 2)  # Pi_0 itself: t = 0 is eta = 3 sigma/2
     quotient, rest = sympy.div(sympy.Poly(fixed_point_equation(), m), sympy.Poly(trivial, m))
-    if not rest.is_zero:
-        raise ArithmeticError("the tau-axis is not a fixed ray of h'")
+    need(rest.is_zero, ArithmeticError("the tau-axis is not a fixed ray of h'"))
     cubic = sympy.expand(-quotient.as_expr())
     substitution(At(-X * Y, {X: trivial, Y: cubic}), fixed_point_equation())
     return trivial, cubic

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import sympy
 
 from singimpact.algebra.derivations import At, motion, substitution
+from singimpact.inputs import need
 from singimpact.paper.routes.equations import equation
 from singimpact.paper.routes.implicit import a_symbol, sigma as offset, t as delay, v_c
 
@@ -212,8 +213,7 @@ def scaled(weights: Weights) -> tuple[Any, Any]:
     >>> scaled(WEIGHTS)[0]
     12*kappa*(e + sigma**2)
     """
-    if weights.velocity != weights.height - weights.time:
-        raise ArithmeticError("x' is not scaled like x by time")
+    need(weights.velocity == weights.height - weights.time, ArithmeticError("x' is not scaled like x by time"))
     images = {
         sigma: H**weights.time * sigma,
         e: H**weights.unfolding * e,
@@ -222,8 +222,7 @@ def scaled(weights: Weights) -> tuple[Any, Any]:
     }
     unit = weights.height - 2 * weights.time
     acceleration = sympy.expand(pushed().subs(images, simultaneous=True) / H**unit)
-    if not acceleration.is_polynomial(H):
-        raise ArithmeticError("x'' does not stay finite as H -> 0")
+    need(acceleration.is_polynomial(H), ArithmeticError("x'' does not stay finite as H -> 0"))
     limit = sympy.factor(acceleration.subs(H, 0))
     rest = sympy.expand((acceleration - sympy.expand(limit)) / H)
     substitution(At(pushed(), images), H**unit * (limit + H * rest))
@@ -267,7 +266,6 @@ def leading_launch(weights: Weights) -> Any:
     }
     put = sympy.expand(v_c(3).subs(images, simultaneous=True))
     least = [sympy.expand(put).coeff(H, n) for n in range(weights.velocity + 1)]
-    if any(least[:-1]):
-        raise ArithmeticError("the launch velocity does not stay finite as H -> 0")
+    need(not any(least[:-1]), ArithmeticError("the launch velocity does not stay finite as H -> 0"))
     substitution(At(v_c(3), images), H**weights.velocity * least[-1], order=weights.velocity, small=[H])
     return least[-1]

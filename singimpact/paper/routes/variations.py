@@ -11,6 +11,7 @@ from typing import Any
 import sympy
 
 from singimpact.algebra.derivations import At, substitution
+from singimpact.inputs import need
 from singimpact.paper.routes.equations import equation
 
 u, E, P, P1, b, b1, q, q1 = sympy.symbols("xdot E P P1 b b1 q q1")
@@ -86,8 +87,7 @@ def singular_p() -> tuple[sympy.Expr, sympy.Expr]:
     y, y_t, t = sympy.symbols("y y_t t")
     velocity = y + t * y_t
     substitution(At(velocity, {y: sympy.Integer(0)}), t * y_t)
-    if sympy.cancel(velocity.subs(y, 0) / t) != y_t:
-        raise ArithmeticError("x-dot is not t dy/dt where y = 0")
+    need(sympy.cancel(velocity.subs(y, 0) / t) == y_t, ArithmeticError("x-dot is not t dy/dt where y = 0"))
     from singimpact.paper.routes import implicit
 
     slope = sympy.diff(implicit.y_c(2), implicit.t).subs({implicit.t: 0, implicit.v: 0, implicit.sigma: 0})
@@ -128,6 +128,5 @@ def cusp_derivatives() -> tuple[sympy.Expr, sympy.Expr]:
     law = by_launch_time()
     mixed = sympy.expand((b1 * law - b * rate_of(law)).subs(still))
     substitution(At(b1 * P - b * P1, {P: law.subs(still), P1: rate_of(law).subs(still)}), -v * wronskian())
-    if sympy.expand(mixed + v * wronskian()) != 0:
-        raise ArithmeticError("the mixed derivative is not v W")
+    need(sympy.expand(mixed + v * wronskian()) == 0, ArithmeticError("the mixed derivative is not v W"))
     return -jerk, mixed

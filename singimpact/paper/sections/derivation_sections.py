@@ -11,7 +11,7 @@ from typing import Any
 import sympy
 
 from singimpact.documents.document_steps import Section
-from singimpact.inputs import unknown
+from singimpact.inputs import need, unknown
 from singimpact.paper.claims.beyond import hertz
 from singimpact.paper.claims.beyond.every_order import j
 from singimpact.paper.claims.beyond.foot import FORMULA
@@ -48,8 +48,7 @@ def _first_order() -> dict[str, str]:
     alpha = sympy.factor((change.time / first_order.s**2).subs(NAMES))
     shift = (first_order.damping + 2 * first_order.A3 / (3 * first_order.A2)).subs(NAMES)
     same = sympy.cancel(10 * moved.time / (first_order.s**2 - 1)).subs(NAMES)
-    if sympy.cancel(same - shift) != 0:
-        raise ArithmeticError("chi is not what the change of time says")
+    need(sympy.cancel(same - shift) == 0, ArithmeticError("chi is not what the change of time says"))
     return {"alpha": _shown(alpha), "chi": _shown(shift), "foot_shift": _shown(first_order.shift())}
 
 

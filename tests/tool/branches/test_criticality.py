@@ -147,16 +147,95 @@ def test_events_without_a_coefficient():
     assert repr(fold) == "<fold at A = 0.274199345009>"
 
 
-def test_a_curve_of_tori_and_its_resonances(torus):
-    curve = si.event_curve(torus, ("A", "w"), ((0.3, 1.6), (1.8, 2.6)), step=0.05)
-    (special,) = curve.special
-    assert (special.kind, special.label) == ("1:4 resonance", "R4")
-    assert "1:4 resonance (R4) at (1.304" in repr(curve)
-    assert special.as_dict()["label"] == "R4"
-    for (A, w), tau, v in zip(curve.parameters, curve.tau, curve.v, strict=True):
-        (orbit,) = POL.replace(A=A, w=w).periodic(1, 1, start=(tau[0], v[0]))
-        assert np.abs(orbit.multipliers) == pytest.approx(np.ones(2), abs=1e-9)
-    A, w = special.parameters
-    near = np.abs(curve.parameters[:, 0] - A).argmin()
-    (orbit,) = POL.replace(A=A, w=w).periodic(1, 1, start=(curve.tau[near][0], curve.v[near][0]))
-    assert np.sort_complex(np.asarray(orbit.multipliers)) == pytest.approx(np.array([-1j, 1j]), abs=1e-8)
+def orbit_at(model, curve, numbers):
+    """The orbit of a model that is next to a point of a curve."""
+    near = np.abs(curve.parameters - numbers).sum(axis=1).argmin()
+    (orbit,) = model.periodic(1, 1, start=(curve.tau[near][0], curve.v[near][0]))
+    assert orbit.visible
+    return orbit
+
+
+DRIVEN = si.ImpactOscillator(
+    "x + 1.142*x**2 - mu*xdot + xdot**3/5", "A*cos(w*t)", "-0.591", "0.939", {"mu": "0.387", "A": "1.582", "w": "1.409"}
+)
+BENT = si.ImpactOscillator("x - 0.516*x**2 + 0.598*xdot", "A*cos(1.034*t)", "-0.465", "0.82", {"A": "0.865"})
+
+
+def driven(mu):
+    """The map of the driven model by scipy, of its other numbers."""
+
+    def step(A, w):
+        force = lambda t, x, u: A * np.cos(w * t) - x - 1.142 * x * x + mu * u - u**3 / 5  # noqa: E731
+        return flown(force, 0.939, -0.591, 2 * np.pi / w)
+
+    return step
+
+
+def bent(A, c):
+    force = lambda t, x, u: A * np.cos(1.034 * t) - x + 0.516 * x * x - 0.598 * u  # noqa: E731
+    return flown(force, 0.82, c, 2 * np.pi / 1.034)
+
+
+def coefficient_beside(curve, model, step, numbers):
+    """The first coefficient by differences of the flow at two steps, of the orbit at a point of a curve."""
+    orbit = orbit_at(model.replace(**dict(zip(curve.over, numbers, strict=True))), curve, numbers)
+    z = np.array([orbit.tau[0], orbit.v[0]])
+    coarse, fine = (by_differences(step(*numbers), z, h) for h in (4e-3, 2e-3))
+    return fine + (fine - coarse) / 3
+
+
+def changes_its_sign(curve, model, step, point):
+    """Whether the coefficient is 0 at a point, and has both signs on the curve beside it."""
+    at, before, after = (
+        coefficient_beside(curve, model, step, numbers)
+        for numbers in (point.parameters, *curve.parameters[point.index : point.index + 2])
+    )
+    return before * after < 0 and abs(at) < 2e-3 * min(abs(before), abs(after))
+
+
+@pytest.fixture(scope="module")
+def tori():
+    branch = si.branch(DRIVEN.periodic(1, 1, start=(2.16940583, 1.81211459))[0], "mu", (0.3, 0.6), step=0.1)
+    event = event_of("torus", branch)
+    return event.parameter, si.event_curve(event, ("A", "w"), ((0.3, 1.6), (1.4, 1.85)), step=0.05, points=200)
+
+
+def test_resonances_on_a_curve_of_tori(tori):
+    mu, curve = tori
+    assert [point.label for point in curve.special] == ["R1", "CH", "R4", "R3", "R2", "R2"]
+    assert "1:4 resonance (R4) at (0.583" in repr(curve)
+    assert curve.special[2].as_dict()["label"] == "R4"
+    assert curve.visible.all()
+    for point, angle in zip(curve.special[2:], (90, 120, 180, 180), strict=True):
+        A, w = point.parameters
+        orbit = orbit_at(DRIVEN.replace(A=A, w=w, mu=mu), curve, point.parameters)
+        z = np.array([orbit.tau[0], orbit.v[0]])
+        matrix = np.stack([multilinear(driven(mu)(A, w), z, 1, [e], 2e-4) for e in np.eye(2)], axis=1)
+        assert np.trace(matrix) == pytest.approx(2 * np.cos(np.radians(angle)), abs=1e-6)
+        assert np.linalg.det(matrix) == pytest.approx(1, abs=1e-6)
+
+
+def test_between_its_resonances_multipliers_of_a_curve_of_tori_are_on_the_circle(tori):
+    """Before R1 and between both R2 they are real, with the product 1: neutral saddles, which have no coefficient."""
+    mu, curve = tori
+    first, second, third = (curve.special[i].index for i in (0, 4, 5))
+    for index, ((A, w), tau, v) in enumerate(zip(curve.parameters, curve.tau, curve.v, strict=True)):
+        (orbit,) = DRIVEN.replace(A=A, w=w, mu=mu).periodic(1, 1, start=(tau[0], v[0]))
+        assert abs(np.prod(orbit.multipliers) - 1) < 1e-9
+        assert np.iscomplex(orbit.multipliers).all() == (first < index <= second or third < index)
+
+
+def test_a_chenciner_point(tori):
+    mu, curve = tori
+    point = curve.special[1]
+    assert (point.kind, point.label) == ("Chenciner", "CH")
+    assert changes_its_sign(curve, DRIVEN.replace(mu=mu), driven(mu), point)
+    assert not changes_its_sign(curve, DRIVEN.replace(mu=mu), driven(mu), curve.special[2])
+
+
+def test_a_generalized_flip():
+    event = event_of("period-doubling", si.branch(BENT.periodic(1, 1)[0], "A", (0.5, 1.2), step=0.1))
+    curve = si.event_curve(event, ("A", "clearance"), ((0.5, 1.2), (-0.9, -0.4)), step=0.05, points=100)
+    (point,) = [point for point in curve.special if point.kind == "generalized flip"]
+    assert point.label == "GPD"
+    assert changes_its_sign(curve, BENT, bent, point)

@@ -12,6 +12,7 @@ import sympy
 
 from singimpact.algebra.certificates import positive_in, positive_on
 from singimpact.algebra.derivations import At, motion, substitution
+from singimpact.inputs import need
 from singimpact.paper.claims.claim import Check, Encoding
 from singimpact.paper.claims.verifiers import Finding, every, is_zero, measured_on, root_of_line, same
 from singimpact.paper.trials.loop_heights import (
@@ -43,8 +44,7 @@ def excess(place: sympy.Expr, velocity: sympy.Expr) -> Any:
     flight = v * time + s * time**2 / 2 + time**3 / 6
     motion((s, v, time), flight, (sympy.Integer(0), sympy.Integer(1)), {})
     found = sympy.expand(sympy.diff(flight, time).subs(time, -s))
-    if not is_zero(found - (v - s**2 / 2)):
-        raise ArithmeticError("x' at A is not v - sigma^2/2")
+    need(is_zero(found - (v - s**2 / 2)), ArithmeticError("x' at A is not v - sigma^2/2"))
     return found.subs({s: place, v: velocity}, simultaneous=True)
 
 
