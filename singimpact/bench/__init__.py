@@ -12,13 +12,13 @@ _FILES = {
     "groups.limit_rows": "BEFORE_SERIES SCRIPTS SERIES reference script",
     "groups.series_rows": "Task",
     "measuring": (
-        "Aim Case Counted EPSILON Effort FULL Measured Method QUICK Timed condition cost cpu_seconds measure "
-        "relative_error"
+        "Aim Case Counted EPSILON Effort FULL Measured Method NO_AIM QUICK Row Timed condition cost cpu_seconds "
+        "measure relative_error"
     ),
     "page": "ABOUT COMMAND READING STRESS_ABOUT STRESS_COMMAND digest_of recorded stress_page timed_digest",
     "peers.fixed_steps": "flights numbers orbit",
     "random_states": "release_trial",
-    "report": "in_words plotted reached table",
+    "report": "as_data growth in_words plotted reached table",
     "selftest.basin_pixels": "Follower row",
     "selftest.responses": "balls derivatives digits fixed_steps limits orbits rebounds",
     "selftest.rows": "flown",

@@ -159,6 +159,7 @@ class Row:
         absent or off by more than a hundredth: another impact. of : problems.
     ratio, spread : time over that of the first method of the case, median and quartiles. rounds : timings.
     aim : what is to be reached. reached : whether it is, with no answer wrong; None without an aim.
+    problems : by which the time of a run was divided.
     """
 
     group: str
@@ -175,6 +176,7 @@ class Row:
     rounds: int
     aim: Aim
     reached: bool | None
+    problems: float = 1.0
 
 
 @dataclass
@@ -310,6 +312,7 @@ def _row(group: str, case: Case, method: Method, turn: _Turn, timings: tuple[Any
         rounds,
         method.aim,
         method.aim.reached(microseconds, wrong),
+        turn.problems,
     )
 
 

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -13,6 +14,7 @@ from singimpact.bench.measuring import Measured, Row
 from singimpact.scenes.style import BLACK, DASH_DOT, DASHES, DOTS, GREY, OPEN, ORBIT_COLORS, SHADE, SKY, WHITE
 
 HEADER = ("case", "method", "setting", "time", "to reach", "error", "wrong", "missed", "times the first", "quartiles")
+GROWING = ("regions", "ensemble", "fit")  # groups whose cases are measured at several numbers of one kind of problem
 Table = tuple[tuple[str, ...], list[list[str]]]
 
 NOTE = (
@@ -76,14 +78,27 @@ def reached(found: Measured) -> str:
     return "\n".join([f"{AIMED} {count} of {len(aimed)} are reached.", *short])
 
 
+def growth(found: Measured) -> list[tuple[str, str, float]]:
+    """Case, method and the power of the number of its problems like which its whole time grows, by least squares."""
+    powers = []
+    for name in dict.fromkeys((row.case, row.method) for row in found.rows):
+        sizes, times = np.log(
+            [(row.problems, row.microseconds) for row in found.rows if (row.case, row.method) == name]
+        ).T
+        if found.group in GROWING and np.ptp(sizes) > 0:
+            powers.append((*name, float(np.polyfit(sizes, sizes + times, 1)[0])))
+    return powers
+
+
 def skipped(found: Measured) -> str:
     """One line a peer that is not installed."""
     return "\n".join(f"{found.group}: {name} is not installed, skipped" for name in found.skipped)
 
 
-def as_data(found: Measured) -> dict[str, Any]:
-    """Rows and what was skipped, as JSON takes them."""
-    return {"rows": [asdict(row) for row in found.rows], "skipped": list(found.skipped)}
+def as_data(found: Measured) -> dict[str, list[Any]]:
+    """Rows, what was skipped and how times grow, as JSON takes them."""
+    powers = [dict(zip(("case", "method", "power"), each, strict=True)) for each in growth(found)]
+    return {"rows": [asdict(row) for row in found.rows], "skipped": list(found.skipped), "growth": powers}
 
 
 # Run time against error, a panel a case and a line a method; bars where there is no error. Method by

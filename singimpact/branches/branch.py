@@ -20,7 +20,7 @@ from singimpact.branches.orbit_curve import SETTINGS, OrbitCurve, places
 from singimpact.branches.orbits import OfImpacts, PeriodicOrbit
 from singimpact.branches.solutions import AnyClosing, closing_of, orbit_of, point_of
 from singimpact.branches.step_search import Crossing, EventTests, Key, StepSearch, Tests
-from singimpact.inputs import InputError, checked_keywords, refuse, takes_two_walls, whole
+from singimpact.inputs import InputError, checked_keywords, refuse, require, takes_two_walls, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION, UPPER, value_of, with_number
 from singimpact.result import numbered
@@ -271,8 +271,7 @@ def interval(over: str, between: Any, value: float) -> tuple[float, float]:
         raise refuse("between", between, "two numbers low < high") from None
     if not low < high or (restitution and not 0 < low < high <= 1):
         raise refuse("between", between, "two numbers low < high" + (" in (0, 1]" if restitution else ""))
-    if not low <= value <= high:
-        raise refuse("between", between, f"an interval that holds {over} = {value:.12g} of the orbit")
+    require(low <= value <= high, "between", between, f"an interval that holds {over} = {value:.12g} of the orbit")
     return low, high
 
 

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.numbers import Array
+from singimpact.inputs import need
 from singimpact.progress import ProgressLine
 
 # Of a point of m + 1 unknowns: m values and derivatives, shapes (m,) and (m, m + 1); nan where there are none.
@@ -295,8 +296,7 @@ def root_between(test: Callable[[float], float], low: float, high: float, ends: 
 
     def defined(length: float) -> float:
         value = ends[0] if length == low else ends[1] if length == high else test(length)
-        if np.isnan(value):
-            raise ArithmeticError(f"no value at {length:.9g}")
+        need(not np.isnan(value), ArithmeticError(f"no value at {length:.9g}"))
         return value
 
     return float(brentq(defined, low, high, xtol=1e-15 * max(high, 1e-300), rtol=8.9e-16, maxiter=1000))

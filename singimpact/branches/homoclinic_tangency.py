@@ -16,7 +16,7 @@ from singimpact.branches.homoclinic import Crossing, Ends
 from singimpact.branches.periodic import periodic
 from singimpact.branches.saddle_arcs import checked_saddle, local_arc
 from singimpact.branches.solutions import orbit_period
-from singimpact.inputs import InputError, checked_keywords, refuse
+from singimpact.inputs import InputError, checked_keywords, need, refuse
 from singimpact.oscillator.moving_number import value_of, with_number
 from singimpact.result import Result
 
@@ -134,8 +134,7 @@ class _Walk:
         """The arcs at the saddles of a model."""
         model = self.model.replace(**{self.name: number}, **beside)
         lists = [periodic(model, saddle.impacts, saddle.k, start=saddle) for saddle in self.saddles]
-        if not all(lists):
-            raise InputError(f"the saddle is lost at {self.name} = {number:.9g}")
+        need(all(lists), InputError(f"the saddle is lost at {self.name} = {number:.9g}"))
         saddles = [checked_saddle(orbits[0]) for orbits in lists]
         return Ends(local_arc(saddles[0], False), local_arc(saddles[-1], True), orbit_period(saddles[0]))
 

@@ -201,8 +201,7 @@ def manifold(
     period = orbit_period(saddle)
     fastest = float(np.max(np.asarray(saddle.v, dtype=float)))
     highest = _highest(saddle, fastest) if v is None else as_float(constant("v", v))
-    if not highest > fastest:
-        raise refuse("v", v, f"a velocity above the largest of the orbit, {fastest:.6g}")
+    require(highest > fastest, "v", v, f"a velocity above the largest of the orbit, {fastest:.6g}")
     longest = as_float(constant("length", length))
     require(longest > 0, "length", length, "a number > 0, in sides of the window")
     window = Window.read((0, period), (0, highest), resolution, STATES)

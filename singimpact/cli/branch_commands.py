@@ -422,8 +422,7 @@ def _border(model: Any, given: tuple[str, float, float], digits: int) -> Any:
 
     over, low, high = given
     found = border_orbits(model, over=over, between=(low, high), digits=digits)
-    if not found:
-        raise InputError(f"--border {over} {low:g} {high:g}: no border orbit is found there")
+    need(found, InputError(f"--border {over} {low:g} {high:g}: no border orbit is found there"))
     return found[0]
 
 
@@ -432,8 +431,7 @@ def _event(orbit: Any, kind: str, over: str, low: float, high: float) -> Any:
     from singimpact.branches.branch import branch
 
     found = [each for each in branch(orbit, over, (low, high)).events if each.kind == kind and each.orbit.visible]
-    if not found:
-        raise InputError(f"--event {kind} {over} {low:g} {high:g}: no {kind} of visible orbits is found there")
+    need(found, InputError(f"--event {kind} {over} {low:g} {high:g}: no {kind} of visible orbits is found there"))
     return found[0]
 
 

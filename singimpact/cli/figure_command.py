@@ -83,6 +83,5 @@ def _numbers(which: str) -> list[int | str]:
         return [*FIGURES] if which == "all" else [*BEYOND]
     if which in BEYOND:
         return [which]
-    if which not in map(str, FIGURES):
-        raise refuse("figure", which, f"{ACCEPTED}, or all, or beyond")
+    require(which in map(str, FIGURES), "figure", which, f"{ACCEPTED}, or all, or beyond")
     return [int(which)]

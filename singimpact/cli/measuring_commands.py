@@ -216,6 +216,7 @@ def _joined(found: list[Measured]) -> dict[str, Any]:
     return {
         "rows": [row for part in parts for row in part["rows"]],
         "skipped": sorted({name for part in parts for name in part["skipped"]}),
+        "growth": [power for part in parts for power in part["growth"]],
     }
 
 
@@ -233,13 +234,14 @@ def _page(public: Measured, output: str | None) -> str:
 
 
 def _text(found: Measured, form: str) -> str:
-    from singimpact.bench.report import NOTE, reached, skipped, table
+    from singimpact.bench.report import NOTE, growth, reached, skipped, table
 
     laid_out = columns if form == "text" else markdown
     parts = [found.group if form == "text" else f"## {found.group}", laid_out(*table(found)), skipped(found)]
     if any(row.wrong is not None for row in found.rows):
         parts.append(NOTE)
-    parts.append(reached(found))
+    powers = [f"{case}: {method} takes a time like n^{power:.2f}" for case, method, power in growth(found)]
+    parts += ["\n".join(powers), reached(found)]
     return "\n\n".join(part for part in parts if part)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from singimpact.algebra.numbers import Array, as_float, constant, float_array
 from singimpact.cases import in_threads
 from singimpact.dynamics.families import OscillatorFamily, beside_members
-from singimpact.dynamics.lives import SETTINGS as LIFE, Lives, Stretch
+from singimpact.dynamics.lives import GRAZE, IMPACT, SETTINGS as LIFE, Lives, Stretch
 from singimpact.flights.flight_path import along
 from singimpact.flights.members import Members
 from singimpact.inputs import checked_keywords, refuse, require_memory, takes_two_walls, whole
@@ -292,7 +292,7 @@ def _flown(
     """Rows of `COLUMNS` and samples of one block of orbits, filled up to `BLOCK`."""
     numbers, which, tau, v, walls, seed = case
     run = _Run(Lives(Members(model, numbers), which, tau, v, walls), ends, noise, seed)
-    run.samples = Samples(run.lives, tau, times) if times.size else None
+    run.samples = Samples(run.lives, times) if times.size else None
     run.fly()
     table = np.full((BLOCK, len(COLUMNS) + 2 * times.size), np.nan)
     table[: which.size, : len(COLUMNS)] = run.table()
@@ -310,62 +310,45 @@ class Samples:
 
     Parameters
     ----------
-    lives : the orbits, before they are flown. start : their first times. times : of the samples, in order.
+    lives : the orbits, before they are flown. times : of the samples, in order.
 
     Attributes
     ----------
     motion : x and x', shape (2, orbits, times); nan before the start, and after an orbit has ended unresolved.
     """
 
-    def __init__(self, lives: Lives, start: Array, times: Array) -> None:
+    def __init__(self, lives: Lives, times: Array) -> None:
         self.lives, self.times = lives, times
         self.motion = np.full((2, lives.which.size, times.size), np.nan)
-        self._alone()  # orbits that begin at rest have rested, and have flown to their first impact
-        rested = np.flatnonzero(np.isfinite(lives.lifted[:, 0]) | (lives.status == Status.sticks))
-        self._rest(rested, start[rested])
+        self.add(lives.events())
 
-    def add(self, stretch: Stretch) -> None:
-        """Take in the flights of a stretch, and the rests and the lift-offs after it."""
-        phase, turns, v, walls = stretch.begun
-        begun = self.lives.time_of(phase, turns, stretch.chosen)
-        starts, speeds = np.column_stack([begun, self.lives.times(stretch)]), np.column_stack([v, stretch.rows[..., 1]])
-        sides = np.column_stack([walls, walls[:, None] ^ (stretch.real & (stretch.rows[..., 11] == 1))])
-        orbit, flight = np.nonzero(stretch.real)
-        at = orbit, flight
-        self._fly(stretch.chosen[orbit], (starts[at], speeds[at], sides[at]), starts[orbit, flight + 1])
-        self._alone()
-        rested = np.flatnonzero(stretch.rested)
-        self._rest(stretch.chosen[rested], starts[rested, stretch.flown[rested]])
+    def add(self, events: Array) -> None:
+        """Take in the flights, chatter and rests between events of orbits, as `Lives.events` has them."""
+        joined = events[1:, 0] == events[:-1, 0]
+        before, ends, kinds = events[:-1][joined], events[1:, 1][joined], events[1:, 3][joined]
+        flies = (kinds == IMPACT) | (kinds == GRAZE)
+        self._fly(before[flies], ends[flies])
+        self._rest(before[~flies], ends[~flies])
 
     def end(self) -> None:
-        """Fill in the motion after the last events of orbits that do not return."""
+        """Fill in the motion after the last events of orbits that rest for ever, or do not return."""
         lives = self.lives
-        away = np.flatnonzero(np.isin(lives.status, (Status.no_return, Status.escaped)))
-        self._fly(away, (lives.time(away), lives.v[away], lives.wall[away]), np.full(away.size, np.inf))
+        last = np.column_stack([np.arange(lives.which.size), lives.time(), lives.v, lives.status, lives.wall])
+        away, forever = np.isin(lives.status, (Status.no_return, Status.escaped)), lives.status == Status.sticks
+        self._fly(last[away], np.full(np.count_nonzero(away), np.inf))
+        self._rest(last[forever], np.full(np.count_nonzero(forever), np.inf))
 
-    def _alone(self) -> None:
-        """Flights that the impact map has decided."""
-        flown = [single for single in self.lives.singles if single.step.status in (Status.hit, Status.graze)]
-        columns = [(one.orbit, one.time, one.v, one.wall, float(one.step.flight_time)) for one in flown]
-        orbits, times, v, walls, lasted = np.array(columns).reshape(-1, 5).T
-        self._fly(orbits.astype(int), (times, v, walls.astype(np.int8)), times + lasted)
-
-    def _rest(self, orbits: Array, since: Array) -> None:
-        """Masses at rest since some times up to their lift-off, if one follows, and the flight after it."""
-        lives, (phase, turns, wall) = self.lives, self.lives.lifted[orbits].T
-        forever = lives.status[orbits] == Status.sticks
-        lifted = np.where(forever, np.inf, lives.time_of(phase, turns, orbits))
-        above = np.where(forever, lives.wall[orbits], wall) == 1
-        places, ends = lives.places(lives.which[orbits], above), np.searchsorted(self.times, np.stack([since, lifted]))
-        for orbit, height, begin, end in zip(orbits.tolist(), places.tolist(), *ends.tolist(), strict=True):
+    def _rest(self, events: Array, ends: Array) -> None:
+        """Masses at their walls from some events up to others."""
+        orbits, above = events[:, 0].astype(int), events[:, 4] == 1
+        places, slots = self.lives.places(self.lives.which[orbits], above), np.stack([events[:, 1], ends])
+        slots = np.searchsorted(self.times, slots)
+        for orbit, height, begin, end in zip(orbits.tolist(), places.tolist(), *slots.tolist(), strict=True):
             self.motion[0, orbit, begin:end], self.motion[1, orbit, begin:end] = height, 0.0
-        flies = lives.status[orbits] == 0
-        launches = lifted[flies], np.zeros(np.count_nonzero(flies)), above[flies].astype(np.int8)
-        self._fly(orbits[flies], launches, lives.time(orbits[flies]))
 
-    def _fly(self, orbits: Array, launches: tuple[Array, Array, Array], ends: Array) -> None:
-        """Flights of orbits from launches (time, v, wall) up to some times."""
-        begun, v, walls = launches
+    def _fly(self, events: Array, ends: Array) -> None:
+        """Flights of orbits from events up to some times."""
+        begun, v, orbits, walls = events[:, 1], events[:, 2], *events[:, [0, 4]].T.astype(int)
         first = np.searchsorted(self.times, begun)
         counts = np.maximum(np.searchsorted(self.times, ends) - first, 0)
         flight = np.repeat(np.arange(orbits.size), counts)
@@ -409,7 +392,7 @@ class _Run:
             stretch = lives.advance(count, going)
             self.speed[going] += np.where(stretch.real, stretch.rows[..., 1], 0.0).sum(axis=1)
             if self.samples is not None:
-                self.samples.add(stretch)
+                self.samples.add(lives.events(stretch))
             if np.isfinite(self.end):
                 self._cut(stretch, before)
             if self.noise:

@@ -1,13 +1,15 @@
 """`osc.over(...)`: models that differ in numbers, as one thing that is flown in compiled loops."""
 
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
 import numpy as np
 
 from singimpact.algebra.numbers import Array, as_float, float_array
-from singimpact.dynamics.lives import Pressure
+from singimpact.dynamics.lives import KINDS, RELEASE, SETTINGS as LIFE, START, Lives, Pressure
+from singimpact.dynamics.orbit import Orbit, recorded
 from singimpact.flights.flat_numbers import EPSILON
 from singimpact.flights.impact_map import impact_map
 from singimpact.flights.members import SETTINGS, Members
@@ -16,9 +18,10 @@ from singimpact.flights.results import JUDGED, Step
 from singimpact.flights.states import States
 from singimpact.flights.walls import at_walls, wall_codes
 from singimpact.handed_on import Study
-from singimpact.inputs import InputError, checked_methods, need, refuse, require_memory, whole
+from singimpact.inputs import InputError, checked_methods, need, refuse, require, require_memory, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION, UPPER, with_number
+from singimpact.result import Result, in_words
 from singimpact.status import Status, status_array
 
 # Of a member's numbers and results, beside the tables of those that fly
@@ -151,6 +154,66 @@ class OscillatorFamily:
         ends, speeds, codes, walls = columns
         return Ends(ends, speeds, status_array(codes), walls if self.osc.upper is not None else None)
 
+    def orbit(self, tau: object, v: object, impacts: int = 200, wall: object = None) -> "Orbits":
+        """The orbit of every model: impacts, complete chatter, rest and lift-off in order.
+
+        Parameters
+        ----------
+        tau, v : states, which broadcast with the members. impacts : flights of each, of which a chatter that is summed
+            up is one. wall : as for `impact_map`.
+
+        Returns
+        -------
+        Orbits : arrays of events; `orbits[index]` is one of the orbits.
+
+        Examples
+        --------
+        >>> import singimpact as si
+        >>> orbits = si.linear(2, 0, "1/2").over(omega=[2, 3.1, 4]).orbit(0.0, 1.0, 50)
+        >>> orbits.tau.shape, orbits[1].sample(1.0).x.round(6)
+        """
+        most = whole("impacts", impacts, 0, 10**7)
+        events, status = in_parts(self, (tau, v, wall), partial(_events, most))
+        _, _, member, _, shape = beside_members(self, (tau, v, wall))
+        columns = np.full((4, member.size, max(map(len, events.flat), default=1)), np.nan)
+        for at, rows in enumerate(events.flat):
+            columns[:, at, : len(rows)] = rows.T
+        columns = columns.reshape(4, *shape, -1)
+        kinds = np.append(KINDS, "")[np.nan_to_num(columns[2], nan=-1).astype(int)]
+        walls = np.nan_to_num(columns[3]).astype(np.int8) if self.osc.upper is not None else None
+        return Orbits(self, member.reshape(shape), columns[0], columns[1], kinds, status_array(status), walls)
+
+
+@dataclass(frozen=True, eq=False)
+class Orbits(Result):
+    """Orbits of models of a family: `orbits[index]` is one of them, with `.phases` and `.sample(t)`.
+
+    Parameters
+    ----------
+    oscillator : the family. member : the model of each orbit, counted along all axes of the family.
+    tau, v, kind, wall : of the events of `Orbit`, along the last axis; nan and "" after the last one.
+    status : 0, or why an orbit ended before all impacts asked for.
+    """
+
+    oscillator: OscillatorFamily
+    member: Array
+    tau: Array
+    v: Array
+    kind: Array
+    status: Any
+    wall: Array | None = None
+
+    __repr__ = in_words
+
+    def __getitem__(self, index: Any) -> Orbit:
+        """The orbit at a place of the arrays."""
+        kinds = self.kind[index]
+        require(kinds.ndim == 1, "index", index, f"one place in {self.member.shape}")
+        some = slice(np.count_nonzero(kinds))
+        walls = np.zeros(kinds.size, np.int8) if self.wall is None else self.wall[index]
+        events = (self.tau[index][some], self.v[index][some], kinds[some], walls[some])
+        return recorded(self.oscillator.member(int(self.member[index])), events, int(self.status[index]))
+
 
 def beside_members(
     osc: Oscillator | OscillatorFamily, states: tuple[Any, ...]
@@ -253,3 +316,20 @@ def _iterated(impacts: int, members: Members, which: Array, tau: Array, v: Array
         result = iterate(one, float(tau[i]), float(v[i]), impacts, wall=int(walls[i]))
         ends[i], speeds[i], codes[i], sides[i] = result.tau, result.v, result.status, result.wall or 0
     return ends, speeds, codes, sides
+
+
+def _events(impacts: int, members: Members, which: Array, tau: Array, v: Array, walls: Array) -> tuple[Array, Array]:
+    """Of each orbit the events, shape (events, 4): time, v, kind and wall; and why it ended before all impacts."""
+    lives, every = Lives(members, which, tau, v, walls), np.arange(which.size)
+    tables = [lives.events()]
+    while (going := np.flatnonzero((lives.status == 0) & (lives.flown + lives.rests < impacts))).size:
+        table = lives.events(lives.advance(np.minimum(LIFE.block, impacts - lives.flown[going]), going))
+        tables.append(table[table[:, 3] != START])
+    table = np.concatenate(tables)
+    table = table[np.argsort(table[:, 0], kind="stable")]
+    events, status = np.empty(which.size, dtype=object), lives.status.copy()
+    for index, rows in enumerate(np.split(table[:, 1:], np.searchsorted(table[:, 0], every[1:]))):
+        flights = np.cumsum((rows[:, 2] != START) & (rows[:, 2] != RELEASE))
+        events[index] = rows[flights <= impacts]
+        status[index] *= flights[-1] <= impacts
+    return events, status

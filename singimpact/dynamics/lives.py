@@ -153,6 +153,11 @@ class Pressure:
         return phases, np.where(np.isfinite(phases), turns, 0.0)
 
 
+# Kinds of events of an orbit, by their numbers
+KINDS = np.array(["start", "impact", "graze", "complete", "release"])
+START, IMPACT, GRAZE, COMPLETE, RELEASE = range(5)
+
+
 class Single(NamedTuple):
     """One flight of an orbit that the impact map has decided: the state before, phase of its time, and the step."""
 
@@ -220,8 +225,10 @@ class Lives:
         self.cycle, self.between, self._lifted_at = np.zeros(size), np.zeros(size, int), np.zeros(size, int)
         self.near = SETTINGS.near
         self.singles: list[Single] = []
+        self._events: list[Array] = []
         self._landings: dict[tuple[int, int, float], tuple[float, float, int, int]] = {}
         self._decided: dict[int, int] = {}
+        self._event(np.arange(size), START)
         still = np.flatnonzero(self.v == 0)
         if still.size:  # a mass that begins at rest has not come to rest
             self._start(still, self._lift)
@@ -253,7 +260,7 @@ class Lives:
 
     def advance(self, count: Any, chosen: Array | None = None) -> Stretch:
         """At most `count` impacts of each chosen orbit that goes on; a chatter that is over ends them before."""
-        self.singles = []
+        self.singles, self._events = [], []
         orders = np.arange(self.which.size) if chosen is None else chosen
         going = orders[self.status[orders] == 0]
         begun, rests = (self.phase[going], self.turns[going], self.v[going], self.wall[going]), self.rests[going]
@@ -278,6 +285,23 @@ class Lives:
             self._decide(int(going[slot]), int(codes[slot]))
         return Stretch(going, rows, flown, (codes == 0) & (flown > 0), begun, self.rests[going] > rests, self.singles)
 
+    def events(self, stretch: Stretch | None = None) -> Array:
+        """Rows of orbit, time, v, number of a kind and wall, orbit after orbit: the states before a stretch, as starts,
+        and all events up to now; without a stretch those of the first states.
+        """
+        tables = self._events
+        if stretch is not None:
+            phase, turns, *begun = stretch.begun
+            at = np.nonzero(stretch.real)
+            sides = stretch.begun[3][at[0]] ^ (stretch.rows[..., 11][at] == 1)
+            columns = (
+                (stretch.chosen, self.time_of(phase, turns, stretch.chosen), begun[0], START, begun[1]),
+                (stretch.chosen[at[0]], self.times(stretch)[at], stretch.rows[..., 1][at], IMPACT, sides),
+            )
+            tables = [*(np.column_stack(np.broadcast_arrays(*each)) for each in columns), *tables]
+        table = np.concatenate(tables)
+        return table[np.argsort(table[:, 0], kind="stable")]
+
     def _start(self, still: Array, pressed_to: Callable[[Array, int], None]) -> None:
         """Orbits at rest: those that a_c presses wait, the others fly."""
         walls = self.wall[still]  # before any of them has moved
@@ -301,7 +325,13 @@ class Lives:
             at = at[~lost]
             self.phase[at], self.turns[at] = self.split(self.phase[at] + left[~lost], self.turns[at], at)
             self.v[at] = 0.0
+            self._event(at, COMPLETE)
             self._stop(at, wall)
+
+    def _event(self, at: Any, kind: int) -> None:
+        """Keep the present states of orbits as events of a kind."""
+        states = self.time(at), self.v[at], np.full(len(at), kind), self.wall[at]
+        self._events.append(np.column_stack([at, *states]))
 
     def _stop(self, at: Array, wall: int) -> None:
         """Masses that come to rest."""
@@ -324,6 +354,7 @@ class Lives:
         self.lifted[at] = np.stack([phases, turns, np.full(at.size, wall)], axis=1)
         self.phase[at], self.turns[at] = phases, turns
         self.resting[at] += self.time(at) - before
+        self._event(at, RELEASE)
         keys = list(zip(self.which[at].tolist(), [wall] * at.size, phases.tolist(), strict=True))
         self._land([key for key in dict.fromkeys(keys) if key not in self._landings], wall)
         landed = np.array([self._landings[key] for key in keys]).reshape(-1, 4)
@@ -333,6 +364,7 @@ class Lives:
         self.phase[at], self.turns[at] = self.split(self.phase[at] + landed[:, 0], self.turns[at], at)
         self.v[at], self.wall[at] = landed[:, 1], landed[:, 2].astype(np.int8)
         self.flown[at] += 1
+        self._event(at, IMPACT)
 
     def _land(self, keys: list[tuple[int, int, float]], wall: int) -> None:
         """The first impacts after lift-offs: time, v and wall after it, and the status."""
@@ -383,3 +415,4 @@ class Lives:
             slice(index, index + 1),
         )
         self.v[index], self.wall[index] = float(step.v), self.wall[index] ^ int(step.wall or 0)
+        self._event([index], GRAZE if step.status == Status.graze else IMPACT)

@@ -34,6 +34,8 @@ BLOCK = 4096
 # Through a chatter that was summed up velocities below this part of the largest one are 0: heights are then below its
 # square
 SLOW = 2.0**-52
+# The phase before an event of a kind
+BEFORE = {"impact": "flight", "graze": "flight", "complete": "chatter", "release": "sticking"}
 # What follows the last event, by the kind of the phase after it
 ENDINGS = {
     "": "all flights asked for were flown",
@@ -414,7 +416,7 @@ class _Run:
             return False
         self._go("chatter", self.tau + time, 0.0, "complete")
         self.flown, self.short = self.flown + 1, False
-        self._rest()
+        self.rest()
         return True
 
     def _mapped(self) -> None:
@@ -437,15 +439,20 @@ class _Run:
             case Status.sticks:
                 if self.osc.plastic:  # the mass rests after each such impact: that is no flight
                     self.flown -= 1
-                self._rest()
-            case Status.no_return | Status.escaped:
-                self._end("no_return", np.inf)
-                escaped = step.status == Status.escaped
-                self.known = np.inf if escaped else self.tau + horizon_of(self.osc, self.horizon)
+                self.rest()
             case _:
-                self._end("unresolved", np.nan)
+                self.stops(int(step.status))
 
-    def _rest(self) -> None:
+    def stops(self, status: int) -> None:
+        """The end of the orbit, for a reason other than a rest."""
+        if status in (Status.no_return, Status.escaped):
+            self._end("no_return", np.inf)
+            self.known = np.inf if status == Status.escaped else self.tau + horizon_of(self.osc, self.horizon)
+        else:
+            self._end("unresolved", np.nan)
+
+    def rest(self) -> None:
+        """The mass at rest, up to its lift-off."""
         lifted = release(self.here, self.tau)
         if not np.isfinite(lifted):
             self._end("sticking" if np.isinf(lifted) else "unresolved", lifted)
@@ -479,6 +486,20 @@ class _Run:
         self.kinds.append(np.tile(kinds, again)[:count])
         self.walls.append(np.tile(walls, again)[:count])
         self.flown = self.most
+
+
+def recorded(osc: Oscillator, events: tuple[Array, Array, Array, Array], status: int) -> Orbit:
+    """An orbit whose events were flown elsewhere: their times, velocities, kinds and walls, and what ended it, or 0."""
+    times, velocities, kinds, walls = events
+    run = _Run(osc, (float(times[-1]), float(velocities[-1])), None, 0, int(walls[-1]))
+    run.times, run.velocities, run.kinds, run.walls = [times], [velocities], [kinds], [walls]
+    ends = pairwise(times.tolist())
+    run.phases = [(BEFORE[kind], *pair) for kind, pair in zip(kinds[1:].tolist(), ends, strict=True)]
+    if status == Status.sticks:
+        run.rest()
+    elif status:
+        run.stops(status)
+    return run.orbit()
 
 
 @lru_cache(maxsize=256)

@@ -17,12 +17,17 @@ from singimpact.bench import (
     FULL,
     GROUPS,
     KINDS,
+    NO_AIM,
     QUICK,
     READING,
     RESTITUTIONS,
     Draws,
     Effort,
+    Measured,
+    Row,
+    as_data,
     flights,
+    growth,
     in_words,
     measured,
     numbers,
@@ -62,6 +67,28 @@ def test_group_at_its_smallest_size(name):
     assert [row for row in judged if row.wrong] == []
     assert judged or name in ("series", "regions", "ensemble")
     assert not found.skipped
+
+
+def test_growth_is_the_power_of_a_known_law():
+    """Of whole times, by method, where there is more than one size; a constant is no growth."""
+
+    def row(method, problems, microseconds, case="a case"):
+        return Row("fit", case, method, "", microseconds, *(None,) * 3, 1, 1.0, (1.0, 1.0), 3, NO_AIM, None, problems)
+
+    rows = [row("square", n, 3.0 * n) for n in (10, 40, 160)] + [row("even", n, 2.0) for n in (10, 40)]
+    found = Measured("fit", [*rows, row("alone", 10, 1.0), row("square", 10, 1.0, "another")])
+    assert growth(found) == [("a case", "square", pytest.approx(2)), ("a case", "even", pytest.approx(1))]
+    assert as_data(found)["growth"][0] == {"case": "a case", "method": "square", "power": pytest.approx(2)}
+    assert growth(Measured("series", rows)) == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["regions", "ensemble", "fit"])
+def test_times_of_many_models_grow_with_their_number(name):
+    """No faster: members, impacts, orbits and places do not slow each other down."""
+    powers = {case: power for case, method, power in growth(measured(name, QUICK)) if method.startswith("singimpact")}
+    assert powers
+    assert max(powers.values()) < 1.3
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -129,7 +156,7 @@ def test_command_writes_table_data_and_pictures(singimpact, tmp_path):
     told = singimpact("bench", "chatter", "--quick", "--json", "-o", tmp_path / "b.json", "--plots", tmp_path / "p")
     assert told.exit_code == 0, told.output
     data = json.loads((tmp_path / "b.json").read_text())
-    named = "group case method setting microseconds error wrong missed of ratio spread rounds aim reached"
+    named = "group case method setting microseconds error wrong missed of ratio spread rounds aim reached problems"
     assert list(data["rows"][0]) == named.split()
     assert data["quick"] is True
     assert all(row["spread"][0] <= row["ratio"] <= row["spread"][1] for row in data["rows"])

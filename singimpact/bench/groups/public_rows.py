@@ -215,34 +215,37 @@ def _scipy(setting: str, places: list[Problem]) -> list[Method]:
 
 
 def ensemble(effort: Effort) -> Iterator[Case]:
-    """A ball on a shaken table that comes to rest again and again, an impact."""
-    rng, impacts, rows = np.random.default_rng(7), 100 if effort.quick else 400, []
-    for count in (500, 1000) if effort.quick else (1000, 10_000):
-        tau, v = rng.uniform(0, 2 * np.pi, count), rng.uniform(0, 3, count)
-        call = partial(si.ensemble, BALL, tau, v, impacts=impacts)
-        rows.append(timed("singimpact, ensemble", f"{count} orbits", count * impacts, call, Aim(1.0)))
-    few = [
-        partial(BALL.orbit, float(time), float(speed), impacts) for time, speed in zip(tau[:20], v[:20], strict=True)
+    """A ball on a shaken table that comes to rest again and again, and members of a family, an impact."""
+    rng, impacts, few = np.random.default_rng(7), 100 if effort.quick else 400, 500 if effort.quick else 1000
+    tau, v = rng.uniform(0, 2 * np.pi, 10 * few), rng.uniform(0, 3, 10 * few)
+
+    def flown(orbits: int, each: int) -> Method:
+        call = partial(si.ensemble, BALL, tau[:orbits], v[:orbits], impacts=each)
+        return timed("singimpact, ensemble", f"{orbits} orbits, {each} impacts", orbits * each, call, Aim(1.0))
+
+    alone = [partial(BALL.orbit, *state, impacts) for state in zip(tau[:20].tolist(), v[:20].tolist(), strict=True)]
+    item = timed("singimpact, orbit", "one after the other", len(alone) * impacts, lambda: [call() for call in alone])
+    yield Case("bouncing ball, more orbits, an impact", [flown(few, impacts), flown(10 * few, impacts), item])
+    yield Case("bouncing ball, longer orbits, an impact", [flown(few, impacts), flown(few, 4 * impacts)])
+    families = [
+        timed("singimpact, family", f"{n} members", 300 * n, family_of(MODELS["linear"], n)) for n in (few, 4 * few)
     ]
-    item = timed("singimpact, orbit", "one after the other", len(few) * impacts, lambda: [call() for call in few])
-    yield Case("bouncing ball, an impact", [*rows, item])
+    yield Case("linear, members of a family, an impact", families)
 
 
 def fit(effort: Effort) -> Iterator[Case]:
     """Restitution and clearance from impacts without noise, an impact."""
     true, names = MODELS["linear"].replace(clearance="0.1"), ("restitution", "clearance")
-    start = true.replace(clearance="0.15", restitution="0.7")
-    for count in (30, 60) if effort.quick else (60, 240, 960):
+    start, own, peers = true.replace(clearance="0.15", restitution="0.7"), [], []
+    counts = (30, 60) if effort.quick else (60, 240, 960)
+    for count in counts:
         seen = true.orbit(0.3, 0.4, count)
         call = partial(si.fit, start, {"tau": seen.tau, "v": seen.v}, names)
-        # times are known to their own roundings, which grow beside a flight
-        own = Method("singimpact, fit", "", lambda call=call: list(call().values.values()), problems=count)
-        yield Case(
-            f"numbers from {count} impacts, an impact",
-            [own, Method(SCIPY, "curve_fit of single flights", partial(_scipy_fit, seen), problems=count)],
-            [0.8, 0.1],
-            [float(count)] * 2,
-        )
+        setting = f"{count} impacts"
+        own.append(Method("singimpact, fit", setting, lambda call=call: list(call().values.values()), problems=count))
+        peers.append(Method(SCIPY, f"curve_fit, {setting}", partial(_scipy_fit, seen), problems=count))
+    # times are known to their own roundings, which grow beside a flight
+    yield Case("numbers from impacts, an impact", [*own, *peers], [0.8, 0.1], [float(counts[-1])] * 2)
 
 
 def _scipy_fit(seen: Orbit) -> list[float]:

@@ -18,13 +18,11 @@ from singimpact.store import cache_folder
 FILES: dict[str, tuple[int | str, ...]] = {
     "outlines": (1, 2, 9, 10),
     "contact_figures": (3, 4, 5, 6, 7, 8),
-    "swan_figures": (11, 12, 14, 15),
-    "unfolded_figures": (13, 16, 17),
-    "corrections": ("B1", "B2", "B3"),
-    "beyond_figures": ("B4", "B5", "B6", "B7", "B8", "B9"),
+    "swan_figures": tuple(range(11, 18)),
+    "beyond_figures": tuple(f"B{n}" for n in range(1, 10)),
 }
 FIGURES = tuple(range(1, 18))  # the numbers of the paper's figures
-BEYOND = (*FILES["corrections"], *FILES["beyond_figures"])  # the names of figures of what the paper does not have
+BEYOND = FILES["beyond_figures"]  # the names of figures of what the paper does not have
 
 
 ACCEPTED = f"a number from {min(FIGURES)} to {max(FIGURES)}, or {BEYOND[0]} to {BEYOND[-1]} for those beyond the paper"

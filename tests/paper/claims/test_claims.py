@@ -32,7 +32,7 @@ from singimpact.paper import (
     select,
     watched,
 )
-from singimpact.paper.claims.sections import section6, section6_negative
+from singimpact.paper.claims.sections import section6, section6_regions
 from singimpact.paper.routes import unfolding
 from singimpact.progress import ProgressLine
 
@@ -224,7 +224,7 @@ def test_an_end_of_gamma_that_is_not_enclosed_in_EA_is_rejected(monkeypatch, fou
 
 
 def test_a_map_of_DA_that_turns_is_rejected(monkeypatch):
-    monkeypatch.setattr(section6_negative, "_turning_points", lambda: [unfolding.D])
+    monkeypatch.setattr(section6_regions, "_turning_points", lambda: [unfolding.D])
     assert not CLAIMS["s6n-maps"].verify(CLAIMS["s6n-maps"].printed.value).holds
 
 

@@ -16,7 +16,6 @@ FILES = (
     "foot",
     "loops",
     "onset",
-    "events",
     "events_harmonic",
     "gamma",
     "hertz",

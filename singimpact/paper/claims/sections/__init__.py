@@ -17,7 +17,6 @@ FILES = (
     "section4b_leaves",
     "section5",
     "section6",
-    "section6_negative",
     "section6_regions",
 )
 SECTIONS = {file: names_of(__name__, {file: "CLAIMS TRIALS"}) for file in FILES}
