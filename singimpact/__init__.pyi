@@ -7,7 +7,7 @@ from singimpact.branches.branch import branch as branch
 from singimpact.branches.doublings import cascade as cascade
 from singimpact.branches.event_curve import event_curve as event_curve
 from singimpact.branches.homoclinic import homoclinic_points as homoclinic_points
-from singimpact.branches.homoclinic_tangency import homoclinic_tangency as homoclinic_tangency
+from singimpact.branches.homoclinic_end import homoclinic_end as homoclinic_end
 from singimpact.branches.manifold import manifold as manifold
 from singimpact.branches.transitions import transitions as transitions
 from singimpact.cases import sweep as sweep

@@ -14,8 +14,8 @@ from singimpact.branches.branch_points import BranchPoint, branch_point
 from singimpact.branches.closing import Closing
 from singimpact.branches.continuation import Curve, Point
 from singimpact.branches.events import KINDS, Event, EventKind, kind_of, own_events
+from singimpact.branches.events.kind import Test
 from singimpact.branches.events.meeting_branches import PITCHFORK
-from singimpact.branches.events.orbit_state import Test
 from singimpact.branches.orbit_curve import SETTINGS, OrbitCurve, places
 from singimpact.branches.orbits import OfImpacts, PeriodicOrbit
 from singimpact.branches.solutions import AnyClosing, closing_of, orbit_of, point_of
@@ -500,7 +500,7 @@ class KeptPoint:
     Parameters
     ----------
     following : length of the next step. multipliers, visible : of the orbit.
-    tests : of events, by kind, impact and number: the numbers of `orbit_state.Test`.
+    tests : of events, by kind, impact and number: the numbers of `events.kind.Test`.
     """
 
     at: Array

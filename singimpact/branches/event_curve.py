@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import partial, reduce
 from typing import Any
 
 import numpy as np
@@ -12,8 +12,8 @@ from singimpact.branches.branch import interval
 from singimpact.branches.branch_points import half_of, halves, repeated
 from singimpact.branches.continuation import Curve, Point
 from singimpact.branches.events import KINDS, Event
+from singimpact.branches.events.kind import OrbitState
 from singimpact.branches.events.meeting_branches import PITCHFORK
-from singimpact.branches.events.orbit_state import OrbitState
 from singimpact.branches.orbit_curve import SETTINGS, OrbitCurve, places
 from singimpact.branches.orbits import OfImpacts
 from singimpact.branches.solutions import AnyClosing, closing_of, point_of
@@ -160,9 +160,7 @@ def event_curve(
     require(len(over) == 2 and over[0] != over[1], "over", over, "two different numbers of the model")
     whole("points", points, 2, 10**6)
     orbit = event.orbit
-    osc = orbit.oscillator
-    for name in over:
-        osc = with_number(osc, name)
+    osc = reduce(with_number, over, orbit.oscillator)
     intervals = (None, None) if between is None else tuple(between)
     require(len(intervals) == 2, "between", between, "a pair of intervals, one for each number")
     values = [value_of(osc, name) for name in over]

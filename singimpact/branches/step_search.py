@@ -17,8 +17,7 @@ import numpy as np
 from singimpact.algebra.numbers import Array
 from singimpact.branches.closing import Loop, Turn
 from singimpact.branches.continuation import Curve, Point, cubic_between, root_between
-from singimpact.branches.events.kind import EventKind
-from singimpact.branches.events.orbit_state import NUDGE, OrbitState, Test
+from singimpact.branches.events.kind import NUDGE, EventKind, OrbitState, Test
 from singimpact.branches.solutions import AnyClosing
 
 # Test functions of events at a point of a branch, with their rates along it.

@@ -8,8 +8,7 @@ from singimpact.handed_on import names_of
 
 _FILES = {
     "attractors": "CHAOS CHATTER OTHER caught closing_orbits new_attractors",
-    "basin_boundaries": "entropy_of uncertainty_of",
-    "basins_of_attraction": "basins",
+    "basins_of_attraction": "basins entropy_of uncertainty_of",
     "behaviours": "LongRun matched",
     "bifurcation_diagram": "bifurcation",
     "chatter": "ENDING chatter_left chatter_limit",

@@ -341,8 +341,8 @@ class Samples:
     def _rest(self, events: Array, ends: Array) -> None:
         """Masses at their walls from some events up to others."""
         orbits, above = events[:, 0].astype(int), events[:, 4] == 1
-        places, slots = self.lives.places(self.lives.which[orbits], above), np.stack([events[:, 1], ends])
-        slots = np.searchsorted(self.times, slots)
+        places = self.lives.places(self.lives.which[orbits], above)
+        slots = np.searchsorted(self.times, np.stack([events[:, 1], ends]))
         for orbit, height, begin, end in zip(orbits.tolist(), places.tolist(), *slots.tolist(), strict=True):
             self.motion[0, orbit, begin:end], self.motion[1, orbit, begin:end] = height, 0.0
 

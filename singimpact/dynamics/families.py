@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import partial
+from functools import partial, reduce
 from typing import Any
 
 import numpy as np
@@ -48,8 +48,7 @@ class OscillatorFamily:
 
     def __init__(self, osc: Oscillator, numbers: Mapping[str, Any]) -> None:
         need(numbers, InputError("over() names no number of the model: give arrays by name, over(omega=[2, 3])"))
-        for name in numbers:
-            osc = with_number(osc, name)
+        osc = reduce(with_number, numbers, osc)
         arrays = {name: float_array(name, values) for name, values in numbers.items()}
         try:
             every = np.broadcast_arrays(*arrays.values())
@@ -172,16 +171,22 @@ class OscillatorFamily:
         >>> orbits = si.linear(2, 0, "1/2").over(omega=[2, 3.1, 4]).orbit(0.0, 1.0, 50)
         >>> orbits.tau.shape, orbits[1].sample(1.0).x.round(6)
         """
-        most = whole("impacts", impacts, 0, 10**7)
-        events, status = in_parts(self, (tau, v, wall), partial(_events, most))
-        _, _, member, _, shape = beside_members(self, (tau, v, wall))
-        columns = np.full((4, member.size, max(map(len, events.flat), default=1)), np.nan)
-        for at, rows in enumerate(events.flat):
-            columns[:, at, : len(rows)] = rows.T
-        columns = columns.reshape(4, *shape, -1)
-        kinds = np.append(KINDS, "")[np.nan_to_num(columns[2], nan=-1).astype(int)]
-        walls = np.nan_to_num(columns[3]).astype(np.int8) if self.osc.upper is not None else None
-        return Orbits(self, member.reshape(shape), columns[0], columns[1], kinds, status_array(status), walls)
+        events, status = in_parts(self, (tau, v, wall), partial(_events, whole("impacts", impacts, 0, 10**7)))
+        shape, member = np.shape(status), beside_members(self, (tau, v, wall))[2]
+        tables = list(events.flat) if shape else [events]
+        columns = np.full((4, member.size, max(map(len, tables), default=1)), np.nan)
+        for column, rows in zip(columns.transpose(1, 0, 2), tables, strict=True):
+            column[:, : len(rows)] = rows.T
+        times, speeds, kinds, walls = columns.reshape(4, *shape, columns.shape[-1])
+        return Orbits(
+            self,
+            member.reshape(shape),
+            times,
+            speeds,
+            np.append(KINDS, "")[np.nan_to_num(kinds, nan=-1).astype(int)],
+            status_array(status),
+            None if self.osc.upper is None else np.nan_to_num(walls).astype(np.int8),
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -205,7 +210,7 @@ class Orbits(Result):
 
     __repr__ = in_words
 
-    def __getitem__(self, index: Any) -> Orbit:
+    def __getitem__(self, index: int | tuple[int, ...]) -> Orbit:
         """The orbit at a place of the arrays."""
         kinds = self.kind[index]
         require(kinds.ndim == 1, "index", index, f"one place in {self.member.shape}")
@@ -262,7 +267,7 @@ def in_parts(
         result = result or [np.empty((which.size, *item.shape[1:]), item.dtype) for item in results]
         for array, values in zip(result, results, strict=True):
             array[at] = values
-    return tuple(array.reshape(*shape, *array.shape[1:])[()] for array in result)
+    return tuple(array.reshape((*shape, *array.shape[1:]))[()] for array in result)
 
 
 def _stepped(
@@ -328,7 +333,7 @@ def _events(impacts: int, members: Members, which: Array, tau: Array, v: Array, 
     table = np.concatenate(tables)
     table = table[np.argsort(table[:, 0], kind="stable")]
     events, status = np.empty(which.size, dtype=object), lives.status.copy()
-    for index, rows in enumerate(np.split(table[:, 1:], np.searchsorted(table[:, 0], every[1:]))):
+    for index, rows in enumerate(np.split(table[:, 1:], np.searchsorted(table[:, 0], every))[1:]):
         flights = np.cumsum((rows[:, 2] != START) & (rows[:, 2] != RELEASE))
         events[index] = rows[flights <= impacts]
         status[index] *= flights[-1] <= impacts

@@ -12,12 +12,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import reduce
 from typing import Any
 
 import numpy as np
 
 from singimpact.algebra.numbers import Array, as_float, float_array
-from singimpact.flights.family import End, Family, family
+from singimpact.flights.family import Family, family
 from singimpact.flights.impact_map import impact_map
 from singimpact.inputs import InputError, checked_keywords, refuse
 from singimpact.oscillator.model import Oscillator, require_model
@@ -134,8 +135,7 @@ def fit(osc: Oscillator, data: Any, over: Sequence[str], *, noise: Any = None) -
     names = tuple(over)
     if not names or isinstance(over, str) or len(set(names)) < len(names):
         raise refuse("over", over, 'different names of numbers, ("restitution", "clearance")')
-    for name in names:
-        osc = with_number(osc, name)
+    osc = reduce(with_number, names, osc)
     columns = _columns(data)
     wanted = len(columns) - ("x" in columns)
     sizes = np.ones(wanted) if noise is None else float_array("noise", noise).ravel()
@@ -380,14 +380,7 @@ class _Run:
         values, count, base = self.values, self.numbers.size, self.states.size
         missed, entries = np.empty((self.links.size, 2)), np.empty((self.links.size, 2, 4 + count))
         for row, i in enumerate(self.links.tolist()):
-            (tau, v), (later, after) = self.states[i].tolist(), self.states[i + 1].tolist()
-            end: End = self.moving.end(values, tau, v, later - tau)
-            rho, slope, by_numbers = self.moving.rebound(float(end.place[1]), values)
-            missed[row] = end.place[0], rho - after
-            columns = np.stack([end.by_tau - end.by_time, end.by_v, end.by_time, 0 * end.by_v, *end.by_numbers], axis=1)
-            columns[1] *= slope
-            columns[1, 3:] += [-1.0, *by_numbers]
-            entries[row] = columns
+            missed[row], entries[row] = self.moving.link(values, self.states[i], self.states[i + 1])
         slots = np.column_stack(
             [2 * self.links[:, None] + np.arange(4), np.tile(np.arange(base, base + count), (self.links.size, 1))]
         )

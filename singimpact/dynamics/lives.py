@@ -291,14 +291,19 @@ class Lives:
         """
         tables = self._events
         if stretch is not None:
-            phase, turns, *begun = stretch.begun
-            at = np.nonzero(stretch.real)
-            sides = stretch.begun[3][at[0]] ^ (stretch.rows[..., 11][at] == 1)
+            phase, turns, v, walls = stretch.begun
+            at, rows = np.nonzero(stretch.real), np.moveaxis(stretch.rows, 2, 0)
             columns = (
-                (stretch.chosen, self.time_of(phase, turns, stretch.chosen), begun[0], START, begun[1]),
-                (stretch.chosen[at[0]], self.times(stretch)[at], stretch.rows[..., 1][at], IMPACT, sides),
+                (stretch.chosen, self.time_of(phase, turns, stretch.chosen), v, START, walls),
+                (
+                    stretch.chosen[at[0]],
+                    self.times(stretch)[at],
+                    rows[1][at],
+                    IMPACT,
+                    walls[at[0]] ^ (rows[11][at] == 1),
+                ),
             )
-            tables = [*(np.column_stack(np.broadcast_arrays(*each)) for each in columns), *tables]
+            tables = [*(np.column_stack(np.broadcast_arrays(*column)) for column in columns), *tables]
         table = np.concatenate(tables)
         return table[np.argsort(table[:, 0], kind="stable")]
 
@@ -328,10 +333,9 @@ class Lives:
             self._event(at, COMPLETE)
             self._stop(at, wall)
 
-    def _event(self, at: Any, kind: int) -> None:
+    def _event(self, at: Array, kind: int) -> None:
         """Keep the present states of orbits as events of a kind."""
-        states = self.time(at), self.v[at], np.full(len(at), kind), self.wall[at]
-        self._events.append(np.column_stack([at, *states]))
+        self._events.append(np.column_stack([at, self.time(at), self.v[at], np.full(len(at), kind), self.wall[at]]))
 
     def _stop(self, at: Array, wall: int) -> None:
         """Masses that come to rest."""
@@ -415,4 +419,4 @@ class Lives:
             slice(index, index + 1),
         )
         self.v[index], self.wall[index] = float(step.v), self.wall[index] ^ int(step.wall or 0)
-        self._event([index], GRAZE if step.status == Status.graze else IMPACT)
+        self._event(np.array([index]), GRAZE if step.status == Status.graze else IMPACT)

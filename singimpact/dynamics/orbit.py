@@ -493,8 +493,9 @@ def recorded(osc: Oscillator, events: tuple[Array, Array, Array, Array], status:
     times, velocities, kinds, walls = events
     run = _Run(osc, (float(times[-1]), float(velocities[-1])), None, 0, int(walls[-1]))
     run.times, run.velocities, run.kinds, run.walls = [times], [velocities], [kinds], [walls]
-    ends = pairwise(times.tolist())
-    run.phases = [(BEFORE[kind], *pair) for kind, pair in zip(kinds[1:].tolist(), ends, strict=True)]
+    run.phases = [
+        (BEFORE[kind], *ends) for kind, ends in zip(kinds[1:].tolist(), pairwise(times.tolist()), strict=True)
+    ]
     if status == Status.sticks:
         run.rest()
     elif status:

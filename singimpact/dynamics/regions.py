@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import partial, reduce
 from itertools import chain, count, repeat
 from typing import Any
 
@@ -166,8 +166,7 @@ def regions(
     require_model("osc", osc)
     names = tuple(over)
     require(len(names) == 2 and names[0] != names[1], "over", over, "two different numbers of the model")
-    for name in names:
-        osc = with_number(osc, name)
+    osc = reduce(with_number, names, osc)
     if osc.period is None:
         raise refuse("model", osc, "one with a period")
     if between is None or np.shape(between) != (2, 2):

@@ -9,7 +9,7 @@ A flight that contracts by e^(-70) leaves two equal columns of D G in doubles; t
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import partial, reduce
 from math import isnan
 from typing import Any
 
@@ -127,8 +127,7 @@ def sensitivity(osc: Oscillator, tau: Any, v: Any, over: Sequence[str]) -> Sensi
     >>> (found.matrix + 0).tolist()  # T = v, v' = r v
     [[1.0, 1.0, 0.0], [0.0, 0.5, 1.0]]
     """
-    for name in over:
-        osc = with_number(osc, name)
+    osc = reduce(with_number, over, osc)
     moving, states = family(osc, over), States.of(osc, tau, v)
     step = impact_map(osc, states.tau, states.v)
     matrix = np.full((states.tau.size, 2, 2 + len(over)), np.nan)

@@ -149,6 +149,18 @@ class Family(ABC):
             self._last_push = at, push
         return push
 
+    def link(self, values: Values, state: Array, later: Array) -> tuple[Array, Array]:
+        """The misses of a later state (tau, v) after a flight, and their derivatives by both states and by the numbers,
+        of shape (2, 4 + numbers). It need be no first hit, and is smooth through grazes.
+        """
+        (tau, v), (arrival, after) = state.tolist(), later.tolist()
+        end = self.end(values, tau, v, arrival - tau)
+        rho, slope, by_numbers = self.rebound(float(end.place[1]), values)
+        columns = np.stack([end.by_tau - end.by_time, end.by_v, end.by_time, 0 * end.by_v, *end.by_numbers], axis=1)
+        columns[1] *= slope
+        columns[1, 3:] += [-1.0, *by_numbers]
+        return np.array([end.place[0], rho - after]), columns
+
     @abstractmethod
     def end(self, values: Values, tau: float, v: float, time: float) -> End:
         """The end of a flight; launches in the first period keep what depends on the period smooth."""

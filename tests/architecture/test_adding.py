@@ -99,7 +99,7 @@ def test_a_bench_row(copy, clone):
 TOY_EVENT = '''"""Toys: the velocity of the first impact is 0.3."""
 
 from singimpact.branches.events.kind import EventKind, Indexed
-from singimpact.branches.events.orbit_state import NUDGE, OrbitState, Test
+from singimpact.branches.events.kind import NUDGE, OrbitState, Test
 
 
 class Toy(EventKind):

@@ -45,7 +45,7 @@ NO_NUMBER |= {
     "transitions",
     "manifold",
     "homoclinic_points",
-    "homoclinic_tangency",
+    "homoclinic_end",
     "border_orbits",
     "cascade",
     "animate",

@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from singimpact.algebra.numbers import Array
-from singimpact.branches.events.kind import CurveLook, EventKind, Indexed, grazes
-from singimpact.branches.events.orbit_state import OrbitState, Test, difference
+from singimpact.branches.events.kind import CurveLook, EventKind, Indexed, OrbitState, Test, difference, grazes
 from singimpact.oscillator.wall_acceleration import acceleration
 
 if TYPE_CHECKING:

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from singimpact.algebra.numbers import Array
-from singimpact.branches.events.kind import CurveLook, EventKind, ReturnMapKind
-from singimpact.branches.events.orbit_state import OrbitState
+from singimpact.branches.events.kind import CurveLook, EventKind, OrbitState, ReturnMapKind
 
 if TYPE_CHECKING:
     from singimpact.branches.solutions import AnyClosing

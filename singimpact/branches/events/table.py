@@ -9,9 +9,8 @@ from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from singimpact.branches.events.graze import GRAZE, INTERIOR_GRAZE, ONSET_OF_REST
-from singimpact.branches.events.kind import EventKind, Indexed
+from singimpact.branches.events.kind import EventKind, Indexed, OrbitState, difference
 from singimpact.branches.events.meeting_branches import BRANCH_POINT, PITCHFORK, TRANSCRITICAL
-from singimpact.branches.events.orbit_state import OrbitState, difference
 from singimpact.branches.events.unit_multipliers import FOLD, NEIMARK_SACKER, PERIOD_DOUBLING
 from singimpact.inputs import InputError, refuse
 

@@ -18,8 +18,7 @@ import numpy as np
 
 from singimpact.algebra.numbers import Array
 from singimpact.branches.closing import Closing, Loop
-from singimpact.branches.events.kind import CurveLook, ReturnMapKind
-from singimpact.branches.events.orbit_state import OrbitState
+from singimpact.branches.events.kind import CurveLook, OrbitState, ReturnMapKind
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.solutions import AnyClosing, closing_of, point_of
 

@@ -173,14 +173,7 @@ def _views(
             dots=far,
             regions=[Region(curve.points, curve.tone, words=curve.words) for curve in regions if curve.label],
         ),
-        Panel(
-            ((left, right), (low, high)),
-            title=f"{title}, magnified",
-            y=y,
-            lines=lines,
-            dots=near,
-            regions=regions,
-        ),
+        Panel(((left, right), (low, high)), title=f"{title}, magnified", y=y, lines=lines, dots=near, regions=regions),
     ]
 
 

@@ -78,6 +78,63 @@ def test_first_hits_are_those_of_scipy(name):
         assert step.tau[index] == pytest.approx(flown.t_events[0][0], abs=1e-9)
 
 
+def first_of(orbit, kind):
+    """When an orbit has its first event of a kind."""
+    return orbit.tau[orbit.kind == kind][:1]
+
+
+@pytest.mark.parametrize("name", FAMILIES)
+def test_orbits_of_members_are_those_alone(name):
+    """Their motion up to the fifth event, chatter and lift-offs; a family sums up more of a chatter than one orbit."""
+    many, tau, v = drawn(name, 15)
+    # the chatter of a law whose own numbers move is refused
+    many = many.osc.over(**{number: values for number, values in many.numbers.items() if number != "s"})
+    tau[2, 0] = 1.0  # of a late state an orbit is known to fewer digits
+    orbits = many.orbit(tau, v, 40)
+    assert orbits.tau.shape == orbits.kind.shape
+    for place in np.ndindex(3, 15):
+        one, alone = orbits[place], many[place[1]].orbit(tau[place], v[place], 40)
+        last = min(len(one.tau), len(alone.tau), 5) - 1
+        assert one.tau[:last] == pytest.approx(alone.tau[:last], abs=1e-7)
+        t = np.linspace(alone.tau[0], min(one.tau[last], alone.tau[last]), 50)[1:-1]
+        if last and t[-1] > t[0]:
+            # next to an impact x' is that before or after it
+            assert one.sample(t).x == pytest.approx(alone.sample(t).x, abs=1e-6)
+        for kind in ("complete", "release"):
+            if {kind} <= {*one.kind[:20]} & {*alone.kind[:20]}:
+                assert first_of(one, kind) == pytest.approx(first_of(alone, kind), abs=1e-6)
+        assert np.count_nonzero(np.isin(one.kind, ("impact", "graze", "complete"))) <= 40
+        assert [phase[1:] for phase in one.phases[: last - 1]] == list(zip(one.tau, one.tau[1:], strict=False))[
+            : last - 1
+        ]
+
+
+def test_orbits_of_members_through_rest():
+    """A ball on a table that is shaken: it rests, is released, and comes again; a weak table keeps it for ever."""
+    ball = si.ImpactOscillator("1", "G*sin(t)", 0, "1/2", {"G": 2})
+    orbits = ball.over(G=[0.9, 1.2, 1.9]).orbit(1.0, 0.5, 60)
+    assert orbits.status.tolist() == [Status.sticks, 0, 0]
+    assert orbits[0].phases[-1][0] == "sticking"
+    assert orbits[0].sample(1e4).x == 0
+    assert "at rest from there on" in repr(orbits[0])
+    for index, G in enumerate((1.2, 1.9), start=1):
+        releases = orbits[index].tau[orbits[index].kind == "release"]
+        assert np.sin(releases) == pytest.approx(np.full(releases.size, 1 / G), abs=1e-12)
+        assert (np.cos(releases) > 0).all()
+        assert releases.size > 1
+        alone = ball.replace(G=G).orbit(1.0, 0.5, 60)
+        t = np.linspace(1, 15, 400)
+        assert orbits[index].sample(t).x == pytest.approx(alone.sample(t).x, abs=1e-9)
+    with pytest.raises(InputError, match="one place in"):
+        orbits[:2]
+    one = ball.over(G=1.9).orbit(1.0, 0.5, 60)  # a family of one
+    assert one.tau.shape == (61 + np.count_nonzero(one.kind == "release"),)
+    assert ball.over(G=1.9).impact_map(1.0, 0.5).tau == ball.replace(G="1.9").impact_map(1.0, 0.5).tau
+    assert one[()].tau.tolist() == orbits[2].tau.tolist()
+    assert ball.over(G=[]).orbit(1.0, 0.5).tau.shape == (0, 1)
+    assert list(orbits.table()) == ["member", "tau", "v", "kind", "status"]
+
+
 def test_a_wrong_number_of_one_member_is_seen():
     many = si.linear("2.8", 0, "0.8").over(omega=[2.0, 3.0])
     other = si.linear("2.8", 0, "0.8").over(omega=[2.0, 3.0 + 1e-9])
