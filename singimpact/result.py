@@ -154,8 +154,8 @@ class Result:
     def to_csv(self, path: Any) -> None:
         """Write `table()` as comma-separated values below a line of names. The file appears when it is complete.
 
-        Regions, ensembles, fits and basins over a number begin with "# " and the model as JSON;
-        `ImpactOscillator(**json.loads(line[2:]))` is the model again.
+        Those of many models, ensembles, fits, cascades of doublings and ends of homoclinic orbits begin with "# " and
+        the model as JSON; `ImpactOscillator(**json.loads(line[2:]))` is the model again.
         """
         heading = f"# {json.dumps(vars(self)['model'].to_dict())}\n" if self.heads_csv else ""
         write_table(path, {name: as_storable(values).tolist() for name, values in self.table().items()}, heading)

@@ -51,8 +51,7 @@ def exact(name: str, value: Any) -> Fraction:
     >>> exact("r", 0.5), exact("r", np.float64(0.25))
     (Fraction(1, 2), Fraction(1, 4))
     """
-    if isinstance(value, bool | np.bool_):
-        raise refuse(name, value, ACCEPTED)
+    require(not isinstance(value, bool | np.bool_), name, value, ACCEPTED)
     if isinstance(value, int | float | Fraction | np.integer | np.floating):
         try:
             if isinstance(value, float | np.floating):
@@ -105,8 +104,7 @@ def constant(name: str, value: Any) -> Expression:
     """
     tree = tree_of(value, (), name)
     require(not names_in(tree), name, value, ACCEPTED)
-    if not isinstance(tree, Number) and not _ball(tree, 64).is_finite():
-        raise refuse(name, value, ACCEPTED)
+    require(isinstance(tree, Number) or _ball(tree, 64).is_finite(), name, value, ACCEPTED)
     return tree
 
 

@@ -185,8 +185,7 @@ def border_orbits(
     >>> print(f"{found.parameter:.13f}", found.period, found.side)
     0.6046031976978 1.0 above
     """
-    if not isinstance(osc, Oscillator):
-        raise refuse("osc", osc, "an ImpactOscillator")
+    require(isinstance(osc, Oscillator), "osc", osc, "an ImpactOscillator")
     require_rebound(osc, "a border orbit, which ends on gamma,")
     osc = with_number(osc, over)
     if osc.period is None:

@@ -10,6 +10,7 @@ from singimpact.algebra.numbers import Array
 from singimpact.branches.branch import Branch, branch
 from singimpact.branches.events import PERIOD_DOUBLING, Event
 from singimpact.inputs import checked_keywords, refuse, takes_two_walls, whole
+from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import value_of
 from singimpact.result import Result
 
@@ -25,7 +26,8 @@ class DoublingCascade(Result):
 
     Parameters
     ----------
-    over : the parameter. parameter : its value at each doubling, shape (m,). n, k : impacts and periods of the orbits
+    model : of the first doubling. over : the parameter.
+    parameter : its value at each doubling, shape (m,). n, k : impacts and periods of the orbits
         that double there, shape (m,).
     ratios : the distance of the two doublings before over that to this one, shape (m,), nan at the first two. They tend
         to 4.6692... of Feigenbaum.
@@ -33,6 +35,8 @@ class DoublingCascade(Result):
     note : why it ends. events : the doublings as events of branches.
     """
 
+    heads_csv = True
+    model: Oscillator
     over: str
     parameter: Array
     n: Array
@@ -96,7 +100,8 @@ def cascade(start: Branch | Event, *, doublings: int = 6) -> DoublingCascade:
     ratios = np.append([np.nan, np.nan], distances[:-1] / distances[1:])[: len(events)]
     limit = float(parameter[-1] + distances[-1] / (ratios[-1] - 1)) if len(events) > 2 else np.nan
     n, k = (np.array([getattr(event.orbit, name) for event in events]) for name in "nk")
-    return DoublingCascade(events[0].over, parameter, n, k, ratios, limit, note, tuple(events))
+    model = events[0].orbit.oscillator
+    return DoublingCascade(model, events[0].over, parameter, n, k, ratios, limit, note, tuple(events))
 
 
 def _first(start: object) -> Event:

@@ -23,7 +23,7 @@ from singimpact.dynamics.growth import Piece
 from singimpact.dynamics.invariant_arcs import before, model_step
 from singimpact.flights.derivative import derivative
 from singimpact.flights.impact_map import checked_digits
-from singimpact.inputs import InputError, checked_keywords, refuse
+from singimpact.inputs import InputError, checked_keywords, refuse, require
 from singimpact.result import Result, Results
 from singimpact.surface.curve import RESOLUTION
 
@@ -219,8 +219,7 @@ def homoclinic_points(
 def crossings(one: Manifold, other: Manifold) -> Crossings:
     """Where a W^u and a W^s cross, of one saddle or of two of one model: see `Crossings`."""
     for curve in (one, other):
-        if not isinstance(curve, Manifold):
-            raise refuse("manifold", curve, "a result of si.manifold")
+        require(isinstance(curve, Manifold), "manifold", curve, "a result of si.manifold")
     if one.stable == other.stable:
         raise InputError(f"two curves {one.name}: give W^u of one saddle and W^s of one (stable=)")
     if one.saddle.oscillator != other.saddle.oscillator:

@@ -7,6 +7,7 @@ grazes.  With one more unknown held, s_u or a velocity v_i, they have one soluti
 tangency a(s_u) has an extremum; where an impact grazes, a manifold is torn.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import reduce
 from itertools import pairwise
@@ -21,7 +22,8 @@ from singimpact.branches.saddle_arcs import checked_saddle, local_arc
 from singimpact.branches.solutions import orbit_period
 from singimpact.dynamics.invariant_arcs import model_step
 from singimpact.flights.family import family
-from singimpact.inputs import InputError, checked_keywords, need, refuse, require
+from singimpact.inputs import InputError, checked_keywords, need, require
+from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import value_of, with_number
 from singimpact.result import Result
 
@@ -31,7 +33,8 @@ NUDGE = 1e-6  # half the width of the difference by the number
 ROUNDS, ARRIVED, SETTLED = 24, 1e-10, 1e-6
 FURTHEST, RESIDUAL = 0.02, 1e-11  # change of s_u in a round at most, relative; the largest miss that is accepted
 VISIBLE = 1e-8  # distance behind the wall that is rounding
-FALLING = (0.75, 0.5, 0.25, 0.0)  # parts of the velocity of the weakest impact, on the way to a graze
+# Rounds near an orbit; the least part of its velocity by which the weakest impact is lowered on the way to a graze
+NEAR, LEAST = 8, 1 / 32
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,12 +43,15 @@ class HomoclinicEnds(Result):
 
     Parameters
     ----------
-    kind : "tangency" or "graze". over : the number that moves, and the one along which it is followed. parameters :
+    model : to start from. kind : "tangency" or "graze".
+    over : the number that moves, and the one along which it is followed. parameters :
         their values, shape (m, 1) or (m, 2). states : the impacts of the orbit, from next to one saddle to next to the
         other, shape (m, N + 1, 2), tau within a period. visible : whether no flight is below the wall, shape (m,).
     notes : why values are missing.
     """
 
+    heads_csv = True
+    model: Oscillator
     kind: str
     over: tuple[str, ...]
     parameters: Array
@@ -74,7 +80,9 @@ class HomoclinicEnds(Result):
 
 
 @checked_keywords
-def homoclinic_end(crossing: Crossing, over: Any, values: Any = None, kind: str = "tangency") -> HomoclinicEnds:
+def homoclinic_end(
+    crossing: Crossing, over: str | Sequence[str], values: Any = None, kind: str = "tangency"
+) -> HomoclinicEnds:
     """Where a homoclinic (or heteroclinic) orbit meets another one and both end, or where its weakest impact grazes.
 
     Parameters
@@ -102,8 +110,7 @@ def homoclinic_end(crossing: Crossing, over: Any, values: Any = None, kind: str 
       restitution = 0.5719922606
       least v 0.1734>
     """
-    if not isinstance(crossing, Crossing):
-        raise refuse("crossing", crossing, "an orbit of si.homoclinic_points")
+    require(isinstance(crossing, Crossing), "crossing", crossing, "an orbit of si.homoclinic_points")
     names = (over,) if isinstance(over, str) else tuple(over)
     require(len(names) == 1 + (values is not None), "over", over, "one number of the model, or two and values=")
     require(kind in ("tangency", "graze"), "kind", kind, "'tangency' or 'graze'")
@@ -119,7 +126,7 @@ def homoclinic_end(crossing: Crossing, over: Any, values: Any = None, kind: str 
         rows.append(([orbit[-1], *beside.values()], *walk.states(orbit, beside)))
     need(rows, InputError(f"{''.join(notes)}; begin with an orbit that is nearer to it"))
     numbers, states, visible = (np.array(column) for column in zip(*rows, strict=True))
-    return HomoclinicEnds(kind, names, numbers, states, visible, tuple(notes))
+    return HomoclinicEnds(walk.model, kind, names, numbers, states, visible, tuple(notes))
 
 
 class _Walk:
@@ -166,8 +173,7 @@ class _Walk:
         orbit, before = self.held(orbit, beside, 0, orbit[0])
         s_u = orbit[0] * 1.01
         for _ in range(ROUNDS):
-            last = orbit[0]
-            orbit, rate = self.held(orbit, beside, 0, s_u)
+            last, (orbit, rate) = orbit[0], self.held(orbit, beside, 0, s_u)
             step = -rate * (s_u - last) / (rate - before) if rate != before else 0.0
             if abs(step) < SETTLED * abs(s_u):
                 return orbit
@@ -176,23 +182,29 @@ class _Walk:
 
     def graze(self, orbit: Array, beside: dict[str, float]) -> Array:
         """The orbit whose weakest impact has v = 0."""
-        slot = 2 + 2 * int(np.argmin(orbit[2:-2:2]))
-        for part in FALLING:
-            orbit = self.held(orbit, beside, slot, part * orbit[slot] if part else 0.0)[0]
+        slot, v = 2 + 2 * int(np.argmin(orbit[2:-2:2])), float(orbit[2:-2:2].min())
+        step = v / 4
+        while v > 0:
+            try:
+                orbit, v = self.held(orbit, beside, slot, max(v - step, 0.0))[0], v - step
+            except InputError:
+                step /= 2
+                if step < LEAST * v:
+                    raise
         return orbit
 
     def held(self, orbit: Array, beside: dict[str, float], slot: int, value: float) -> tuple[Array, float]:
         """The orbit near an orbit of which one of the unknowns has a value, and the rate of the number by it."""
         one, other = (self.ends(orbit, beside, e)[0] for e in (NUDGE, -NUDGE))
         row, by_number = np.eye(len(orbit))[slot], (one - other) / (2 * NUDGE)
-        for _ in range(ROUNDS):
+        for _ in range(NEAR):
             miss, matrix = self._conditions(orbit, beside, by_number)
             matrix, unit = np.vstack([matrix, row]), np.append(0.0 * miss, 1.0)
             need(np.isfinite(matrix).all(), InputError(f"a flight is lost at {self.name} = {orbit[-1]:.9g}"))
             step, rate = np.linalg.solve(matrix, np.column_stack([np.append(miss, orbit[slot] - value), unit])).T
             orbit = orbit - step
             if np.abs(step).max() < ARRIVED and np.abs(miss).max() < RESIDUAL:
-                return orbit, float(rate[-1])
+                return np.where(row == 1, value, orbit), float(rate[-1])
         raise InputError(f"Newton's method does not end at {self.name} = {orbit[-1]:.9g}")
 
     def _conditions(self, orbit: Array, beside: dict[str, float], by_number: Array) -> tuple[Array, Array]:

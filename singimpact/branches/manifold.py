@@ -15,7 +15,7 @@ from singimpact.branches.solutions import orbit_period
 from singimpact.dynamics.growth import LEFT, LOST, NATURAL, TORN, Carried, Piece
 from singimpact.dynamics.invariant_arcs import before, model_step
 from singimpact.flights.results import counted
-from singimpact.inputs import checked_keywords, refuse, require
+from singimpact.inputs import checked_keywords, require
 from singimpact.oscillator.wall_acceleration import acceleration, largest_push
 from singimpact.result import Result
 from singimpact.surface.curve import RESOLUTION, STATES, Curve, Mark, Window
@@ -196,8 +196,7 @@ def manifold(
     ('W^u', True, True)
     """
     saddle = checked_saddle(saddle)
-    if not isinstance(stable, bool | np.bool_):
-        raise refuse("stable", stable, "True for W^s, False for W^u")
+    require(isinstance(stable, bool | np.bool_), "stable", stable, "True for W^s, False for W^u")
     period = orbit_period(saddle)
     fastest = float(np.max(np.asarray(saddle.v, dtype=float)))
     highest = _highest(saddle, fastest) if v is None else as_float(constant("v", v))

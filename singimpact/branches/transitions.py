@@ -250,8 +250,7 @@ def transitions(
     >>> [[orbit.kind for orbit in each.orbits] for each in found.intervals]
     [['chatter'], []]
     """
-    if not isinstance(osc, Oscillator):
-        raise refuse("osc", osc, "an ImpactOscillator")
+    require(isinstance(osc, Oscillator), "osc", osc, "an ImpactOscillator")
     pairs = None if orbits is None else _pairs(orbits)
     if pairs is not None and osc.period is None:
         raise InputError("the forcing has no period: periodic orbits need one")

@@ -169,7 +169,8 @@ class OscillatorFamily:
         --------
         >>> import singimpact as si
         >>> orbits = si.linear(2, 0, "1/2").over(omega=[2, 3.1, 4]).orbit(0.0, 1.0, 50)
-        >>> orbits.tau.shape, orbits[1].sample(1.0).x.round(6)
+        >>> orbits.tau.shape, round(float(orbits[1].sample(1.0).x), 6)
+        ((3, 51), 1.020267)
         """
         events, status = in_parts(self, (tau, v, wall), partial(_events, whole("impacts", impacts, 0, 10**7)))
         shape, member = np.shape(status), beside_members(self, (tau, v, wall))[2]
@@ -179,8 +180,9 @@ class OscillatorFamily:
             column[:, : len(rows)] = rows.T
         times, speeds, kinds, walls = columns.reshape(4, *shape, columns.shape[-1])
         return Orbits(
-            self,
+            self.osc,
             member.reshape(shape),
+            {name: values[member].reshape(shape) for name, values in self.flat.items()},
             times,
             speeds,
             np.append(KINDS, "")[np.nan_to_num(kinds, nan=-1).astype(int)],
@@ -195,13 +197,16 @@ class Orbits(Result):
 
     Parameters
     ----------
-    oscillator : the family. member : the model of each orbit, counted along all axes of the family.
+    model : the first of the models. member : that of each orbit, counted along all axes of the family.
+    numbers : name -> the number of the model of each orbit.
     tau, v, kind, wall : of the events of `Orbit`, along the last axis; nan and "" after the last one.
     status : 0, or why an orbit ended before all impacts asked for.
     """
 
-    oscillator: OscillatorFamily
+    heads_csv = True
+    model: Oscillator
     member: Array
+    numbers: dict[str, Array]
     tau: Array
     v: Array
     kind: Array
@@ -217,7 +222,13 @@ class Orbits(Result):
         some = slice(np.count_nonzero(kinds))
         walls = np.zeros(kinds.size, np.int8) if self.wall is None else self.wall[index]
         events = (self.tau[index][some], self.v[index][some], kinds[some], walls[some])
-        return recorded(self.oscillator.member(int(self.member[index])), events, int(self.status[index]))
+        model = self.model.replace(**{name: float(values[index]) for name, values in self.numbers.items()})
+        return recorded(model, events, int(self.status[index]))
+
+    def as_dict(self) -> dict[str, Any]:
+        """Member, numbers of the model, events and status of each orbit."""
+        values = super().as_dict()
+        return self.numbers | {name: value for name, value in values.items() if name != "numbers"}
 
 
 def beside_members(

@@ -4,26 +4,25 @@ Impacts are flown by compiled loops until the chatter left is short; then its re
 the next rise of a_c through 0. What follows a lift-off is fixed by its phase: the first impact after it is flown once.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from singimpact.algebra.derivatives import derivative
-from singimpact.algebra.expressions import Expression, evaluate, names_in, number, substitute, subtract
+from singimpact.algebra.expressions import Expression, names_in, number, substitute, subtract
 from singimpact.algebra.numbers import Array
-from singimpact.algebra.rings import DOUBLES
 from singimpact.dynamics.lift_off import next_lift_offs, release
 from singimpact.dynamics.remaining import NAMES, chatter_completes, force_trees, law_coefficients, remaining
 from singimpact.flights.causes import decoded
 from singimpact.flights.impact_map import impact_map
 from singimpact.flights.kernels.hits import PRESSED
 from singimpact.flights.members import Members
+from singimpact.flights.model_numbers import valued
 from singimpact.flights.results import Step
 from singimpact.generated.completion import chatter_terms
-from singimpact.inputs import InputError
 from singimpact.oscillator.linear import form_of
 from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.status import Status
@@ -61,7 +60,7 @@ class Pressure:
         self.osc = members.osc.mirrored if above else members.osc
         self.wall = members.numbers.place(int(above))
         self.place = members.numbers.column(self.wall)
-        self.slopes = members.numbers.slope(int(above))
+        self.slopes, self._side = members.numbers.slope(int(above)), partial(members.side, above=int(above))
 
     @cached_property
     def trees(self) -> list[Expression]:
@@ -76,13 +75,7 @@ class Pressure:
     def values(self, tree: Expression, which: Array, tau: Array) -> Array:
         """A tree at times of members."""
         letters = {name: values[which] for name, values in self.over.items()}
-        return self.valued(tree, {**letters, "t": tau}) + 0.0 * tau
-
-    @staticmethod
-    def valued(tree: Expression, state: Mapping[str, Array]) -> Array:
-        """A tree in doubles."""
-        with np.errstate(all="ignore"):
-            return np.asarray(evaluate(tree, state, DOUBLES))
+        return np.asarray(valued(tree, {**letters, "t": tau})) + 0.0 * tau
 
     def push(self, which: Array, tau: Array) -> Array:
         """a_c at times of members."""
@@ -93,6 +86,9 @@ class Pressure:
         a = self.push(which, tau)
         if not self.over:
             left = remaining(self.osc, tau, v, a)[0]
+        elif self._law is None:
+            states = zip(which.tolist(), tau[:, None], v[:, None], a[:, None], strict=True)
+            left = np.array([remaining(self._side(index), *state)[0][0] for index, *state in states])
         else:
             jets = {f"a_d{n}": self.values(self.trees[n], which, tau) for n in (1, 2, 3)}
             trees = force_trees(self.osc.force(self.members.letters), self.wall)
@@ -102,12 +98,10 @@ class Pressure:
         return np.where((a < 0) & (left >= 0), left, np.nan)
 
     @cached_property
-    def _law(self) -> dict[str, float]:
-        if not self.osc.smooth_at_rest or (names_in(self.osc.restitution) - {"v"}) & self.members.letters:
-            raise InputError(
-                "chatter of many models at once is summed up for restitutions that are numbers, or laws that are "
-                "smooth at v = 0 and whose numbers do not move"
-            )
+    def _law(self) -> dict[str, float] | None:
+        """Coefficients of the law of restitution; None of one that is not smooth at v = 0, or whose numbers move."""
+        if (names_in(self.osc.restitution) - {"v"}) & self.members.letters or not self.osc.smooth_at_rest:
+            return None
         return law_coefficients(self.osc)
 
     @cached_property
@@ -145,7 +139,7 @@ class Pressure:
             turns = np.where(rise < tau, 1.0, 0.0)
             alone = np.flatnonzero(~(np.abs(np.abs(ratio) - 1) > SETTINGS.swan))
         for index in alone.tolist():
-            one = self.members.side(int(which[index]), int(self.osc is not self.members.osc))
+            one = self._side(int(which[index]))
             if one.period is None:
                 phases[index] = release(one, float(tau[index]))
             else:

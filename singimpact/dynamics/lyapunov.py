@@ -21,6 +21,7 @@ from singimpact.dynamics.families import OscillatorFamily, in_parts
 from singimpact.dynamics.lives import Lives, Single, Stretch
 from singimpact.dynamics.remaining import chatter_completes
 from singimpact.flights.derivative import derivative, log_determinant
+from singimpact.flights.model_numbers import valued
 from singimpact.flights.response import with_bend
 from singimpact.inputs import InputError, checked_keywords, refuse, shown, takes_two_walls, whole
 from singimpact.oscillator.model import Oscillator
@@ -256,7 +257,7 @@ class Growth:
                 slope = -law[which[at]]
             else:
                 letters = {name: values[which[at]] for name, values in self.lives.members.over.items()}
-                slope = self.lives.pressures[wall].valued(law, {**letters, "v": -np.abs(velocity[at])})
+                slope = valued(law, {**letters, "v": -np.abs(velocity[at])})
             result[at] = -slope if wall else slope
         return result
 
@@ -301,8 +302,7 @@ class Growth:
         osc, letters = lives.members.osc, lives.members.letters
         state = {name: values[which] for name, values in lives.members.over.items()}
         state |= {"x": lives.places(which, velocity > 0), "xdot": velocity, "t": at}
-        pressure = lives.pressures[0]
-        return pressure.valued(osc.forcing(letters), state) - pressure.valued(osc.force(letters), state)
+        return np.asarray(valued(osc.forcing(letters), state) - valued(osc.force(letters), state))
 
 
 def _products(matrices: Array, pieces: int, length: int) -> tuple[Array, Array]:

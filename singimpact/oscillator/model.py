@@ -313,8 +313,7 @@ def _rebuilt(kind: type[Oscillator], fields: dict[str, Any]) -> Oscillator:
 
 
 def _parameters(given: Mapping[str, Any]) -> dict[str, Expression]:
-    if not isinstance(given, Mapping):
-        raise refuse("parameters", given, "a mapping from names to numbers, such as {'omega': 1.7}")
+    require(isinstance(given, Mapping), "parameters", given, "a mapping from names to numbers, such as {'omega': 1.7}")
     named: dict[Any, Any] = {getattr(name, "name", name): value for name, value in given.items()}  # sympy's Symbols
     for name in named:
         if not isinstance(name, str) or not (name.isidentifier() and name.isascii()) or name in RESERVED:
@@ -352,8 +351,7 @@ def require_rebound(osc: Oscillator, what: str) -> None:
 
 def require_model(name: str, value: object) -> None:
     """Refuse what is not a model."""
-    if not isinstance(value, Oscillator):
-        raise refuse(name, value, "an ImpactOscillator")
+    require(isinstance(value, Oscillator), name, value, "an ImpactOscillator")
 
 
 def not_smooth(osc: Oscillator, what: str) -> InputError:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.numbers import as_float, constant
-from singimpact.inputs import InputError, checked_methods, refuse, require_known, shown, unknown, whole
+from singimpact.inputs import InputError, checked_methods, refuse, require, require_known, shown, unknown, whole
 from singimpact.oscillator.model import FIELDS, Oscillator, read_fields, require_model
 from singimpact.scenes.layer_data import Results, Shown
 from singimpact.scenes.style import BLACK, GREY, PENS, WHITE, new_axes
@@ -169,8 +169,7 @@ class Scene:
             if not isinstance(state, tuple | list) or len(state) != 2:
                 raise refuse("orbits", state, "states of two numbers, tau and v")
         for mark in self.marks:
-            if not isinstance(mark, tuple | list) or len(mark) != 3:
-                raise refuse("marks", mark, "a letter and two numbers")
+            require(isinstance(mark, tuple | list) and len(mark) == 3, "marks", mark, "a letter and two numbers")
         places = (
             (checked_text("marks", mark[0]), *(as_float(constant("marks", entry)) for entry in mark[1:]))
             for mark in self.marks
@@ -324,8 +323,7 @@ def _model(fields: Any, path: Path) -> Oscillator:
     """A table as in a model file, or the name of one, beside the scene."""
     if isinstance(fields, str):
         return Oscillator(**read_fields(path.parent / fields))
-    if not isinstance(fields, dict):
-        raise refuse("model", fields, "a table [model] or the name of a model file")
+    require(isinstance(fields, dict), "model", fields, "a table [model] or the name of a model file")
     require_known("key in [model]:", fields, FIELDS)
     for key in FIELDS[:4]:
         if key not in fields:

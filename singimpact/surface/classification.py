@@ -16,7 +16,7 @@ import numpy as np
 from singimpact.algebra.numbers import as_float
 from singimpact.contact.points import tangency_points
 from singimpact.contact.swans import SwanPoint, swan_points_over_clearance
-from singimpact.inputs import InputError, refuse
+from singimpact.inputs import InputError, require
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.result import Result
@@ -124,8 +124,7 @@ def classify(model: Oscillator, tau: Any = None, t: Any = None, between: Any = N
     >>> [(point.name, point.maps, point.tau, round(point.t, 9)) for point in found.points][:3]
     [('cusp', 'p', -3.0, 4.0), ('tangency', 'p, phi', -1.0, 0.0), ('cusp', 'phi', -1.0, 4.0)]
     """
-    if not isinstance(model, Oscillator):
-        raise refuse("model", model, "an ImpactOscillator")
+    require(isinstance(model, Oscillator), "model", model, "an ImpactOscillator")
     usual_tau, usual_t = default_window(model)
     surface = ImpactSurface(model, usual_tau if tau is None else tau, usual_t if t is None else t)
     singular = _of_the_surface(surface)

@@ -22,7 +22,7 @@ from singimpact.contact.points import TangencyPoint, tangency_points
 from singimpact.flights.impact_map import first_hit
 from singimpact.flights.inverse_map import backwards
 from singimpact.flights.model_numbers import fastest_rate
-from singimpact.inputs import checked_keywords, refuse, takes_two_walls
+from singimpact.inputs import checked_keywords, require, takes_two_walls
 from singimpact.oscillator.model import Oscillator
 from singimpact.surface.curve import RESOLUTION, STATES, SURFACE, Curve, Mark, Window
 from singimpact.surface.other_wall import TO_LAND, TO_LAUNCH, OtherWall, at_lower_wall
@@ -220,8 +220,7 @@ class ImpactSurface:
     def __init__(
         self, osc: Oscillator, tau: Any, t: Any, resolution: Any = RESOLUTION.usual, *, wall: object = None
     ) -> None:
-        if not isinstance(osc, Oscillator):
-            raise refuse("osc", osc, "an ImpactOscillator")
+        require(isinstance(osc, Oscillator), "osc", osc, "an ImpactOscillator")
         self.model, self.window = osc.seen_from(wall), Window.read(tau, t, resolution)
         self._rest = RestFlights(self.model)
         self._other = None if osc.upper is None else OtherWall(self.model)

@@ -91,8 +91,7 @@ def place(model: Any, j: int, tau: Any) -> Place:
     ------
     InputError : not a model; no such point; a_c does not vanish there to this order.
     """
-    if not isinstance(model, Oscillator):
-        raise refuse("model", model, "an ImpactOscillator")
+    require(isinstance(model, Oscillator), "model", model, "an ImpactOscillator")
     if tau is None:
         return Place(model, j, None, _first(model, j))
     exact = constant("tau", tau)
@@ -326,8 +325,7 @@ class LetteredModel:
     tau: Any = None
 
     def __post_init__(self) -> None:
-        if not isinstance(self.model, Oscillator):
-            raise refuse("model", self.model, "an ImpactOscillator")
+        require(isinstance(self.model, Oscillator), "model", self.model, "an ImpactOscillator")
         if isinstance(self.keep, str) or not isinstance(self.keep, Sequence) or not self.keep:
             raise refuse("keep", self.keep, "a sequence of names of parameters")
         if self.model.parametric:

@@ -28,7 +28,7 @@ from singimpact.algebra.univariate import precision_of
 from singimpact.codegen.polynomial_source import function_source
 from singimpact.contact.contact import Contact, contact_order, derivative_name
 from singimpact.handed_on import flint, sympy
-from singimpact.inputs import InputError, checked_keywords, refuse, whole
+from singimpact.inputs import InputError, checked_keywords, refuse, require, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import sign_of_acceleration
 from singimpact.theory.completion import in_length, length_weight, rho_names
@@ -167,8 +167,7 @@ def grazing_map(order: int = 1, model: Any = None, at: Any = None, digits: int =
         j = 0 if at in (None, "graze") else contact_order(at)
         _checked(order, j, MOST["symbols"])
         return _generic(j, order)
-    if not isinstance(model, Oscillator):
-        raise refuse("model", model, "an ImpactOscillator")
+    require(isinstance(model, Oscillator), "model", model, "an ImpactOscillator")
     if at is None:
         raise refuse("at", at, "the time of the graze, at which a_c > 0 or has an even zero")
     where = _graze(model, constant("at", at))

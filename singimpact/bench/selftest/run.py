@@ -23,7 +23,7 @@ from singimpact.bench.truth.graded_steps import HIT, MISS
 from singimpact.bench.truth.plain_orbits import PlainOrbits
 from singimpact.contact.points import tangency_points
 from singimpact.impact_oscillator import ImpactOscillator
-from singimpact.inputs import InputError, checked_keywords, refuse, takes_two_walls, whole
+from singimpact.inputs import InputError, checked_keywords, require, takes_two_walls, whole
 from singimpact.progress import ProgressLine
 from singimpact.status import Status
 
@@ -292,8 +292,7 @@ def selftest(osc: ImpactOscillator, *, states: int = 1000, seed: int = 0) -> Sel
     >>> found.wrong, found.rows[1].compared, found.rows[1].agree
     (0, 'against small fixed steps', 40)
     """
-    if not isinstance(osc, ImpactOscillator):
-        raise refuse("osc", osc, "an ImpactOscillator")
+    require(isinstance(osc, ImpactOscillator), "osc", osc, "an ImpactOscillator")
     count, chosen = whole("states", states, 1, 10**6), whole("seed", seed, 0, 2**63)
     begun = process_time()
     with ProgressLine() as line:

@@ -1,5 +1,7 @@
 """Ends of homoclinic orbits: two on one side of a tangency and none beyond; an impact that is lost at a graze."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -58,6 +60,14 @@ def clearances(c):
 @pytest.fixture(scope="module")
 def graze():
     return si.homoclinic_end(min(clearances(0), key=lambda orbit: orbit.weakest), "clearance", kind="graze")
+
+
+def test_a_file_of_ends_has_their_model(graze, tmp_path):
+    graze.to_csv(tmp_path / "ends.csv")
+    heading, names, row = (tmp_path / "ends.csv").read_text().splitlines()
+    assert si.ImpactOscillator(**json.loads(heading[2:])) == si.linear("2.8", 0, "0.75")
+    assert names == "clearance,weakest,visible"
+    assert float(row.split(",")[0]) == graze.parameters[0, 0]
 
 
 def test_a_flight_touches_the_wall_where_an_impact_grazes(graze):
