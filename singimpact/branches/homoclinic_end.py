@@ -33,8 +33,7 @@ NUDGE = 1e-6  # half the width of the difference by the number
 ROUNDS, ARRIVED, SETTLED = 24, 1e-10, 1e-6
 FURTHEST, RESIDUAL = 0.02, 1e-11  # change of s_u in a round at most, relative; the largest miss that is accepted
 VISIBLE = 1e-8  # distance behind the wall that is rounding
-# Rounds near an orbit; the least part of its velocity by which the weakest impact is lowered on the way to a graze
-NEAR, LEAST = 8, 1 / 32
+LEAST = 1 / 32  # part of its velocity by which the weakest impact is lowered at least, on the way to a graze
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,25 +129,29 @@ def homoclinic_end(
 
 
 class _Walk:
-    """Orbits at numbers near one another, each an array of s_u, z_1, ..., z_{N-1}, s_s and the number."""
+    """Orbits at numbers near one another, each an array of s_u, z_1, ..., z_{N-1}, s_s and the number.
+
+    The times of its impacts are in periods of the forcing: those of another period lie near them.
+    """
 
     def __init__(self, crossing: Crossing, names: tuple[str, ...]) -> None:
         self.saddles = (crossing.unstable,) if crossing.kind == "homoclinic" else (crossing.unstable, crossing.stable)
-        self.name, self.s = names[0], crossing.s
-        self.model = reduce(with_number, names, crossing.unstable.oscillator)
+        self.name, self.s, self.model = names[0], crossing.s, reduce(with_number, names, crossing.unstable.oscillator)
         self.moving = family(self.model, names)
 
     def begin(self, states: Array) -> Array:
         """The unknowns of an orbit whose times are within a period."""
         times = np.cumsum(np.append(states[0, 0], model_step(self.model, states[:-1])[:, 0] - states[:-1, 0]))
-        self.turns = float(np.rint((times[-1] - states[-1, 0]) / orbit_period(self.saddles[0])))
-        inner = np.column_stack([times, states[:, 1]])[1:-1]
-        return np.array([self.s[0], *inner.ravel(), self.s[1], value_of(self.model, self.name)])
+        period = orbit_period(self.saddles[0])
+        self.turns, inner = (
+            np.rint((times[-1] - states[-1, 0]) / period),
+            np.column_stack([times / period, states[:, 1]]),
+        )
+        return np.array([self.s[0], *inner[1:-1].ravel(), self.s[1], value_of(self.model, self.name)])
 
     def states(self, orbit: Array, beside: dict[str, float]) -> tuple[Array, bool]:
         """The impacts, with times within a period, and whether no flight between them is below the wall."""
-        ends, _, period = self.ends(orbit, beside)
-        states = np.vstack([ends[0], orbit[1:-2].reshape(-1, 2), ends[1]])
+        states, _, period = self.impacts(orbit, beside)
         flights = zip(*states[:-1].T.tolist(), np.diff(states[:, 0]).tolist(), strict=True)
         lowest = min(
             float(self.moving.path({self.name: orbit[-1], **beside}, *flight)[:, 0].min()) for flight in flights
@@ -156,17 +159,19 @@ class _Walk:
         states[:, 0] = np.mod(states[:, 0], period)
         return states, bool(lowest > -VISIBLE and states[:, 1].min() > -VISIBLE)
 
-    def ends(self, orbit: Array, beside: dict[str, float], more: float = 0.0) -> tuple[Array, list[Array], float]:
-        """The first and the last impact, on the arcs at the saddles of a model, the slopes of the arcs, the period."""
+    def impacts(self, orbit: Array, beside: dict[str, float], more: float = 0.0) -> tuple[Array, list[Array], float]:
+        """All impacts, the first and the last on the arcs at the saddles of a model; slopes of the arcs; the period."""
         number = float(orbit[-1]) + more
         model = self.model.replace(**{self.name: number}, **beside)
         lists = [periodic(model, saddle.impacts, saddle.k, start=saddle) for saddle in self.saddles]
         need(all(lists), InputError(f"the saddle is lost at {self.name} = {number:.9g}"))
         saddles = [checked_saddle(orbits[0]) for orbits in lists]
-        away, home = local_arc(saddles[0], False), local_arc(saddles[-1], True)
-        points, period = np.vstack([away.points(orbit[:1]), home.points(orbit[-2:-1])]), orbit_period(saddles[0])
-        points[1, 0] += self.turns * period
-        return points, [away.slope(float(orbit[0])), home.slope(float(orbit[-2]))], period
+        away, home, period = local_arc(saddles[0], False), local_arc(saddles[-1], True), orbit_period(saddles[0])
+        inner = orbit[1:-2].reshape(-1, 2) * [period, 1]
+        states = np.vstack(
+            [away.points(orbit[:1]), inner, home.points(orbit[-2:-1]) + np.array([self.turns * period, 0])]
+        )
+        return states, [away.slope(float(orbit[0])), home.slope(float(orbit[-2]))], period
 
     def extremum(self, orbit: Array, beside: dict[str, float]) -> Array:
         """The orbit with da/ds_u = 0, by the secant method."""
@@ -182,8 +187,8 @@ class _Walk:
 
     def graze(self, orbit: Array, beside: dict[str, float]) -> Array:
         """The orbit whose weakest impact has v = 0."""
-        slot, v = 2 + 2 * int(np.argmin(orbit[2:-2:2])), float(orbit[2:-2:2].min())
-        step = v / 4
+        slot, v = 2 + 2 * int(np.argmin(orbit[2:-2:2])), max(float(orbit[2:-2:2].min()), 1e-300)
+        step = max(v / 4, 1e-9)
         while v > 0:
             try:
                 orbit, v = self.held(orbit, beside, slot, max(v - step, 0.0))[0], v - step
@@ -195,9 +200,9 @@ class _Walk:
 
     def held(self, orbit: Array, beside: dict[str, float], slot: int, value: float) -> tuple[Array, float]:
         """The orbit near an orbit of which one of the unknowns has a value, and the rate of the number by it."""
-        one, other = (self.ends(orbit, beside, e)[0] for e in (NUDGE, -NUDGE))
+        one, other = (self.impacts(orbit, beside, e)[0].ravel() for e in (NUDGE, -NUDGE))
         row, by_number = np.eye(len(orbit))[slot], (one - other) / (2 * NUDGE)
-        for _ in range(NEAR):
+        for _ in range(ROUNDS):
             miss, matrix = self._conditions(orbit, beside, by_number)
             matrix, unit = np.vstack([matrix, row]), np.append(0.0 * miss, 1.0)
             need(np.isfinite(matrix).all(), InputError(f"a flight is lost at {self.name} = {orbit[-1]:.9g}"))
@@ -209,13 +214,12 @@ class _Walk:
 
     def _conditions(self, orbit: Array, beside: dict[str, float], by_number: Array) -> tuple[Array, Array]:
         """Misses of the flights, and their derivatives by the unknowns."""
-        ends, slopes, _ = self.ends(orbit, beside)
-        states = np.vstack([ends[0], orbit[1:-2].reshape(-1, 2), ends[1]])
+        states, slopes, period = self.impacts(orbit, beside)
         count, values = 2 * len(states) - 2, {self.name: float(orbit[-1]), **beside}
         miss, matrix = np.empty(count), np.zeros((count, count + 3))
         for i, pair in enumerate(pairwise(states)):
             miss[2 * i : 2 * i + 2], columns = self.moving.link(values, *pair)
             matrix[2 * i : 2 * i + 2, 2 * i : 2 * i + 4], matrix[2 * i : 2 * i + 2, -1] = columns[:, :4], columns[:, 4]
-        first, last = matrix[:, :2], matrix[:, -3:-1]
-        number = matrix[:, -1] + first @ by_number[0] + last @ by_number[1]
-        return miss, np.column_stack([first @ slopes[0], matrix[:, 2:-3], last @ slopes[1], number])
+        number, inner = matrix[:, -1] + matrix[:, :-1] @ by_number, np.tile([period, 1.0], len(states) - 2)
+        first, last = matrix[:, :2] @ slopes[0], matrix[:, -3:-1] @ slopes[1]
+        return miss, np.column_stack([first, matrix[:, 2:-3] * inner, last, number])

@@ -219,7 +219,7 @@ class Lives:
         self.cycle, self.between, self._lifted_at = np.zeros(size), np.zeros(size, int), np.zeros(size, int)
         self.near = SETTINGS.near
         self.singles: list[Single] = []
-        self._events: list[Array] = []
+        self._events: list[tuple[Array, Array, Array, int, Array]] = []
         self._landings: dict[tuple[int, int, float], tuple[float, float, int, int]] = {}
         self._decided: dict[int, int] = {}
         self._event(np.arange(size), START)
@@ -283,11 +283,11 @@ class Lives:
         """Rows of orbit, time, v, number of a kind and wall, orbit after orbit: the states before a stretch, as starts,
         and all events up to now; without a stretch those of the first states.
         """
-        tables = self._events
+        columns = self._events
         if stretch is not None:
             phase, turns, v, walls = stretch.begun
             at, rows = np.nonzero(stretch.real), np.moveaxis(stretch.rows, 2, 0)
-            columns = (
+            columns = [
                 (stretch.chosen, self.time_of(phase, turns, stretch.chosen), v, START, walls),
                 (
                     stretch.chosen[at[0]],
@@ -296,9 +296,9 @@ class Lives:
                     IMPACT,
                     walls[at[0]] ^ (rows[11][at] == 1),
                 ),
-            )
-            tables = [*(np.column_stack(np.broadcast_arrays(*column)) for column in columns), *tables]
-        table = np.concatenate(tables)
+                *columns,
+            ]
+        table = np.concatenate([np.column_stack(np.broadcast_arrays(*column)) for column in columns])
         return table[np.argsort(table[:, 0], kind="stable")]
 
     def _start(self, still: Array, pressed_to: Callable[[Array, int], None]) -> None:
@@ -329,7 +329,7 @@ class Lives:
 
     def _event(self, at: Array, kind: int) -> None:
         """Keep the present states of orbits as events of a kind."""
-        self._events.append(np.column_stack([at, self.time(at), self.v[at], np.full(len(at), kind), self.wall[at]]))
+        self._events.append((at, self.time(at), self.v[at], kind, self.wall[at]))
 
     def _stop(self, at: Array, wall: int) -> None:
         """Masses that come to rest."""

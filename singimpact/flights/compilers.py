@@ -14,7 +14,16 @@ from typing import Any
 
 from singimpact.codegen import radii
 from singimpact.codegen.over_lists import FUNCTIONS
-from singimpact.flights.bind import ADDRESSES, IN_STEPS, LAW, MODULES, RECURRENCE, Emitted, constants, functions_of
+from singimpact.flights.bind import (
+    ADDRESSES,
+    IN_STEPS,
+    LAW,
+    MODULES,
+    RECURRENCE,
+    Emitted,
+    constants,
+    functions_of,
+)
 from singimpact.flights.kernels import recurrence
 
 UNWRAPPED: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}

