@@ -150,9 +150,10 @@ def test_a_budget_says_how_far_the_flight_came() -> None:
 
 @pytest.mark.slow
 def test_a_long_flight_keeps_its_errors() -> None:
-    """More steps than are traced at first."""
-    hit = si.ImpactOscillator("x-100*(1-x**2)*xdot", "cos(t)", 0, "1/2").first_hit("0.3", 1)
-    more = si.ImpactOscillator("x-100*(1-x**2)*xdot", "cos(t)", 0, "1/2").first_hit("0.3", 1, digits=18)
+    """More steps than the 400 that are traced at first."""
+    osc = si.ImpactOscillator("x+x**3/90", "cos(t)/9+sin(300*t)/5+3/2", -1, "1/2")
+    assert osc.first_hit("0.3", 1, steps=400).cause == Cause.step_budget
+    hit, more = osc.first_hit("0.3", 1), osc.first_hit("0.3", 1, digits=18)
     assert hit.status == Status.hit
     assert 1 <= hit.condition < 100
     assert abs(float(more.flight_time) / hit.flight_time - 1) <= hit.time_error < 1e-11
