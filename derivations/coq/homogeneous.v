@@ -1,6 +1,6 @@
-(* Impacts before a contact of order j in the homogeneous model x'' = +-t^j, whose forms are exact: for every j and
-   every restitution r in (0, 1) there is one invariant ratio lambda; longer flights than on its ray end after finitely
-   many impacts, shorter ones accumulate before the contact. *)
+(* Impacts before a contact of order j in the homogeneous model x'' = +-t^j, whose forms are exact (`motion`): for every
+   j and every restitution r in (0, 1) there is one invariant ratio lambda; orbits of longer flights than on its ray
+   have finitely many impacts before the contact, those of shorter flights accumulate before it. *)
 
 From Coq Require Import Reals Lra Lia.
 From Contact Require Import ratios fates.
@@ -252,7 +252,8 @@ Proof. intro W. assert (B := Q_positive j l ltac:(lra)). unfold drift. field. lr
 Lemma drift_rises x y : 0 < x -> x < y -> drift x < drift y.
 Proof.
   intros Hx Hy. assert (W := restitution_rises j x y ltac:(lra) Hy). assert (A := drift_sign x Hx).
-  assert (B := drift_sign y ltac:(lra)). assert (X := Q_positive j x ltac:(lra)). assert (Y := Q_positive j y ltac:(lra)).
+  assert (B := drift_sign y ltac:(lra)).
+  assert (X := Q_positive j x ltac:(lra)). assert (Y := Q_positive j y ltac:(lra)).
   apply (Rmult_lt_reg_r (Q j x * Q j y)); [now apply Rmult_lt_0_compat|].
   replace (drift x * (Q j x * Q j y)) with (drift x * Q j x * Q j y) by ring.
   replace (drift y * (Q j x * Q j y)) with (drift y * Q j y * Q j x) by ring. rewrite A, B. nra.
@@ -396,7 +397,7 @@ Proof.
   apply Rle_antisym; apply D_order; lra.
 Qed.
 
-(* with rest > 0 an orbit chatters completely before the contact; without infinitely many impacts it passes it *)
+(* all fates before the contact: complete chatter there, finitely many impacts, or the ray into the contact *)
 Theorem fates :
   (lambda < l 0%nat -> exists rest, 0 < rest < s 0%nat /\ Un_cv s rest /\ Un_cv l 1) /\
   ~ l 0%nat < lambda /\
@@ -404,6 +405,3 @@ Theorem fates :
 Proof. exact (conj shorter_flights_chatter (conj longer_flights_end on_the_ray_all_ratios_are_equal)). Qed.
 
 End Homogeneous.
-
-(* nothing is assumed but the axioms of Coq's real numbers *)
-Print Assumptions fates.
