@@ -227,6 +227,9 @@ class _Work:
             raise
         except BaseException:
             for future in self.running:
+                # an interruption within `wait` leaves futures locked by this thread, and their pool would never end
+                while future._condition._is_owned():  # type: ignore[attr-defined]
+                    future._condition.release()
                 # the management thread of a ProcessPoolExecutor fails on futures that are cancelled from outside
                 if not pool.replaceable:
                     future.cancel()

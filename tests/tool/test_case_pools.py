@@ -368,3 +368,18 @@ def test_basins_and_diagrams_on_a_cluster(cluster):
         for executor in (cluster.get_executor(), None)
     )
     assert np.array_equal(found.events, alone.events, equal_nan=True)
+
+
+@pytest.mark.parametrize("executor", ["None", "ThreadPoolExecutor(1)"])
+def test_an_interruption_while_futures_are_locked_ends_the_script(executor, tmp_path):
+    """Ctrl-C within `wait`, which locks futures one by one and keeps those locks when it is left then."""
+    text = (
+        "import math, singimpact as si\nfrom concurrent.futures import ThreadPoolExecutor\n"
+        "from singimpact import cases\n"
+        "def interrupted(futures, *_):\n    for future in futures:\n        future._condition.acquire()\n"
+        "    raise KeyboardInterrupt\n"
+        f"cases.wait = interrupted\nsi.sweep(math.sqrt, [1.0] * 100, executor={executor})"
+    )
+    done = run(tmp_path, text)
+    assert done.returncode != 0
+    assert done.stderr.strip().splitlines()[-1] == "KeyboardInterrupt"
