@@ -259,7 +259,6 @@ Proof.
     assert (W := last (max N M) HM). apply Rabs_def2 in HN. lra. }
   assert (Hm : 0 < m < lambda) by (unfold m in *; split; nra).
   assert (F : 1 < T 0 m) by (apply T_grows; [lra|rewrite L_at_0; lra]).
-  destruct (T_tends m ltac:(lra) to0 lm (T 0 m - 1) ltac:(lra)) as [N HN].
   set (rise := (T 0 m - 1)).
   destruct (T_tends m ltac:(lra) to0 lm (rise / 2) ltac:(unfold rise; lra)) as [A HA].
   destruct (Hk (rise / 4) ltac:(unfold rise; lra)) as [C HC].

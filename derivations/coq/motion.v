@@ -107,9 +107,7 @@ Let b := (-1) ^ j / (INR (j + 1) * INR (j + 2)).
 
 Theorem launch_before l : l < 1 -> launch j (- s) ((1 - l) * s) = b * s ^ (j + 1) * ((1 - l) * P j l).
 Proof.
-  intro H. destruct (counts j) as [A [B _]]. assert (E := launch_is j (- s) ((1 - l) * s)).
-  replace (- s + (1 - l) * s) with (- (l * s)) in E by ring. rewrite !of_minus, Rpow_mult_distr in E.
-  replace (j + 2)%nat with (S (j + 1)) in E at 3 5 6 by lia.
+  intro H. destruct (counts j) as [A [B _]].
   apply (Rmult_eq_reg_l ((1 - l) * s * (INR (j + 1) * INR (j + 2)))); [|apply Rgt_not_eq; apply Rmult_lt_0_compat; nra].
   replace ((1 - l) * s * (INR (j + 1) * INR (j + 2)) * launch j (- s) ((1 - l) * s))
     with ((1 - l) * s * launch j (- s) ((1 - l) * s) * (INR (j + 1) * INR (j + 2))) by ring.
@@ -117,7 +115,7 @@ Proof.
   replace ((1 - l) * s * (INR (j + 1) * INR (j + 2))
     * ((-1) ^ j / (INR (j + 1) * INR (j + 2)) * s ^ (j + 1) * ((1 - l) * P j l)))
     with ((-1) ^ j * (s * s ^ (j + 1)) * ((1 - l) ^ 2 * P j l)) by (field; lra).
-  rewrite P_closed. destruct (counts j) as [_ [_ C]]. rewrite launch_is.
+  rewrite P_closed, launch_is.
   replace (- s + (1 - l) * s) with (- (l * s)) by ring. rewrite !of_minus, Rpow_mult_distr.
   replace (j + 2)%nat with (S (S j)) by lia. replace (j + 1)%nat with (S j) by lia.
   rewrite (S_INR (S j)). simpl ((-1) ^ S _). simpl (s ^ S _). simpl (l ^ S _). ring.

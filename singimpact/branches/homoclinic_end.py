@@ -136,17 +136,16 @@ class _Walk:
 
     def __init__(self, crossing: Crossing, names: tuple[str, ...]) -> None:
         self.saddles = (crossing.unstable,) if crossing.kind == "homoclinic" else (crossing.unstable, crossing.stable)
-        self.name, self.s, self.model = names[0], crossing.s, reduce(with_number, names, crossing.unstable.oscillator)
+        self.name, self.s = names[0], crossing.s
+        self.model = reduce(with_number, names, crossing.unstable.oscillator)
         self.moving = family(self.model, names)
 
     def begin(self, states: Array) -> Array:
         """The unknowns of an orbit whose times are within a period."""
         times = np.cumsum(np.append(states[0, 0], model_step(self.model, states[:-1])[:, 0] - states[:-1, 0]))
         period = orbit_period(self.saddles[0])
-        self.turns, inner = (
-            np.rint((times[-1] - states[-1, 0]) / period),
-            np.column_stack([times / period, states[:, 1]]),
-        )
+        self.turns = float(np.rint((times[-1] - states[-1, 0]) / period))
+        inner = np.column_stack([times / period, states[:, 1]])
         return np.array([self.s[0], *inner[1:-1].ravel(), self.s[1], value_of(self.model, self.name)])
 
     def states(self, orbit: Array, beside: dict[str, float]) -> tuple[Array, bool]:
@@ -187,6 +186,7 @@ class _Walk:
 
     def graze(self, orbit: Array, beside: dict[str, float]) -> Array:
         """The orbit whose weakest impact has v = 0."""
+        # above 0, so that an orbit that grazes already, at other numbers, is solved once more
         slot, v = 2 + 2 * int(np.argmin(orbit[2:-2:2])), max(float(orbit[2:-2:2].min()), 1e-300)
         step = max(v / 4, 1e-9)
         while v > 0:

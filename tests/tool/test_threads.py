@@ -263,11 +263,12 @@ def test_eight_threads_give_the_bits_of_one(alone, names):
     quick, slow = work(sorted(names - set(SLOW))), work(sorted(names & set(SLOW)))
     for job in quick + slow:
         alone(job)
-    forget()
-    shifted = [quick[7 * n :] + quick[: 7 * n] for n in range(THREADS)]
-    tasks = [jobs + (slow if n % 4 == 0 else []) for n, jobs in enumerate(shifted)]
-    for found in in_threads(tasks):
-        assert {job: value for job, value in found.items() if value != alone(job)} == {}
+    for _ in range(2 if names == set(CALLS) else 1):
+        forget()
+        shifted = [quick[7 * n :] + quick[: 7 * n] for n in range(THREADS)]
+        tasks = [jobs + (slow if n % 4 == 0 else []) for n, jobs in enumerate(shifted)]
+        for found in in_threads(tasks):
+            assert {job: value for job, value in found.items() if value != alone(job)} == {}
     assert (mpmath.mp.prec, flint.ctx.prec) == before
 
 

@@ -78,7 +78,7 @@ def test_two_events_that_meet_are_listed_or_noted(share: float) -> None:
 @pytest.mark.parametrize("kind", paired_events.KINDS)
 def test_a_branch_from_the_orbit_of_an_event_has_that_event(kind):
     """A test function is 0 at the start there, up to rounding; of both sides one has the event."""
-    for turn in range(3):
+    for turn in range(4):
         pair = paired_events.drawn(kind, np.random.default_rng([41, turn]), (1e-2, 1e-1))
         for event in si.branch(pair.orbit, "q", pair.between).events:
             if event.kind in (kind, "period-doubling") and min(abs(event.parameter - at) for at in pair.events) < 1e-6:
