@@ -22,20 +22,38 @@ def claims_page(verdicts: Sequence[Any]) -> str:
     """Every claim with what is printed, what holds instead, and its verdict."""
     from singimpact.documents.rendering import markdown_text
 
+    steps = numbered_steps()
     parts = ["# All claims", "A statement of the paper is named by the label of its equation, or by a name of ours. "
              "Where it is corrected, the second formula holds; the verdict is then that of the second formula. "
-             "[What rests on what](graph.md) has the sections as a picture."]  # fmt: skip
+             "[What rests on what](graph.md) has the sections as a picture. A number such as (4.27) is that of a step "
+             "in the derivations, the document that `singimpact derive --format pdf -o FOLDER` writes."]  # fmt: skip
     for section in sorted({verdict.section for verdict in verdicts}):
         parts.append(f"## Section {section}")
         for verdict in (each for each in verdicts if each.section == section):
             title = markdown_text(verdict.title)
             parts += [
-                f'<span id="{anchor(verdict.id)}"></span>**`{verdict.id}`** {title} (*{words(verdict)}*)',
+                f'<span id="{anchor(verdict.id)}"></span>**`{verdict.id}`** {title} (*{words(verdict)}*)'
+                + (f", {steps[verdict.id]}" if verdict.id in steps else ""),
                 f"$$\n{one_line(verdict.printed)}\n$$",
             ]
             if verdict.corrected:
                 parts += ["To be read", f"$$\n{one_line(verdict.corrected)}\n$$"]
     return "\n\n".join(parts) + "\n"
+
+
+def numbered_steps() -> dict[str, str]:
+    """Claim -> the number of the equation of the derivations that shows it, or of the last one before its words."""
+    from singimpact.paper.sections.stored_sections import kept_sections
+
+    found: dict[str, str] = {}
+    for section in kept_sections():
+        number, count = section.title.split(". ")[0], 0
+        for step in section.steps:
+            count += bool(step.equation)
+            at = f"{number}.{count}" if number.isdigit() else f"{count} beyond the paper"
+            for claim in step.claims:
+                found.setdefault(claim, f"({at})" if step.equation else f"after ({at})")
+    return found
 
 
 def one_line(formula: str) -> str:

@@ -43,6 +43,15 @@ def graph(place: Path) -> str:
     return graph_page(found)
 
 
+def fates() -> str:
+    """The theorem on fates near a contact with its proof, as the derivations have it: for a page that takes it in."""
+    from singimpact.documents.document_steps import Section
+    from singimpact.documents.rendering import as_markdown
+    from singimpact.paper.sections.section_templates import steps_of
+
+    return as_markdown(Section("fates", "", steps_of("fates", {})), {}).removeprefix("# \n")
+
+
 def commands() -> str:
     """What each command says of itself."""
     from click.testing import CliRunner
@@ -192,6 +201,7 @@ def build(app: Any) -> None:
              "figures": lambda: figures(place, steps)}  # fmt: skip
     for name in steps(pages, "computing pages... "):
         put(place / f"{name}.md", pages[name]())
+    put(place / "fates.txt", fates())  # no page of its own
     pictures = {"branches": branches, "manifolds": manifolds, "gamma_proved": gamma_proved}
     for name in steps(pictures, "drawing pictures... "):
         pictures[name](place)

@@ -63,17 +63,19 @@ class Mark:
     Attributes
     ----------
     verdict : its kind. effective : the weakest verdict along all that it rests on, in words; of what holds instead,
-        where it is corrected. printed : the paper's formula in LaTeX, where it is corrected.
+        where it is corrected. printed : the paper's formula in LaTeX, where it is corrected. place : of the equation,
+        such as ``(18) in the paper``.
     """
 
     verdict: str
     effective: str
     printed: str = ""
+    place: str = ""
 
     @property
     def text(self) -> str:
-        """The effective verdict; ``corrected, proved`` where what holds instead is proved."""
-        return f"{self.verdict}, {self.effective}" if self.printed else self.effective
+        """The effective verdict; ``corrected, proved`` where what holds instead is proved; the number in the paper."""
+        return ", ".join(filter(None, (self.printed and self.verdict, self.effective, self.place)))
 
 
 def claims_of(sections: Iterable[Section]) -> tuple[str, ...]:

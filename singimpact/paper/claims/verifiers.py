@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
+from itertools import product
 from typing import Any
 
 import sympy
@@ -108,22 +109,19 @@ def identity(truth: Callable[[], Any], what: str = "derived from the equation of
 
 
 def sample(stated: Any, derived: Any) -> dict[str, str]:
-    """Numbers at which two expressions differ."""
+    """Numbers at which two expressions differ: few letters that are 1 and the rest 0, where that tells them apart."""
     symbols = sorted(stated.free_symbols | derived.free_symbols, key=str)
-    for shift in range(len(_SAMPLES)):
-        point = {
-            symbol: sympy.Rational(*_SAMPLES[(n + shift) % len(_SAMPLES)].as_integer_ratio())
-            for n, symbol in enumerate(symbols)
-        }
-        left, right = (sympy.nsimplify(side.subs(point)) for side in (stated, derived))
-        if left.is_finite and right.is_finite and left != right:
-            at = ", ".join(f"{symbol} = {value}" for symbol, value in point.items())
-            return {"at": at or "every point", "stated": _short(left), "derived": _short(right)}
+    few = sorted(product((Fraction(0), Fraction(1)), repeat=len(symbols)), key=sum)
+    for values in (*few, *((_SAMPLES * 3)[shift : shift + len(symbols)] for shift in range(len(_SAMPLES)))):
+        point = dict(zip(symbols, map(sympy.Rational, values), strict=True))
+        left, right = (side.subs(point) for side in (stated, derived))
+        if left.is_finite and right.is_finite and (left - right).equals(0) is False:
+            at = ", ".join(f"{name} = {value}" for name, value in point.items() if value)
+            return {
+                "at": f"{at}, all else 0".lstrip(", ") if 0 in point.values() else at or "every point",
+                **{of: str(x if x.is_Rational else sympy.N(x, 9)) for of, x in (("stated", left), ("derived", right))},
+            }
     raise ArithmeticError("no sample point tells the two expressions apart")
-
-
-def _short(value: sympy.Expr) -> str:
-    return str(value) if value.is_Rational else str(sympy.N(value, 15))
 
 
 def every(

@@ -124,7 +124,7 @@ _GREEK = "sigma|tau|eta|omega|kappa|lambda|beta|gamma|phi|chi|psi|ell|Pi"
 _SIGNS = {"!=": r"\ne", "<=": r"\le", ">=": r"\ge", "->": r"\to"}
 _LETTERS = re.compile(
     rf"(?P<dot>x-dot|x_dot)(?P<wall>_c)?|(?P<sign>!=|<=|>=|->)|\b(?P<jet>a)_d(?P<order>\d)\b|\b(?P<name>{_GREEK}|dv|[A-Za-z])"
-    r"(?P<below>_[A-Za-z0-9*+-]+|_\([a-z ]+\)|(?<=m)[123])?(?P<primes>'+)?(?![A-Za-z0-9_('])"
+    r"(?P<below>_[A-Za-z0-9*+-]+|_\([a-z ]+\)|(?<=m)[123])?(?P<primes>'+)?(?![A-Za-z0-9_'])"
 )
 
 
@@ -133,10 +133,10 @@ def in_letters(text: str) -> str:
 
     Examples
     --------
-    >>> print(in_letters("x-dot/h^2 at sigma' = -h, a_d1 = 7/4, m2 a root, f_10 = 2"))
-    $\dot x$/h^2 at $\sigma'$ = -h, $a'$ = 7/4, $m_{2}$ a root, $f_{10}$ = 2
+    >>> print(in_letters("x-dot/h^2 at sigma' = -h, a_d1 = 7/4, m2 a root, f_10 = 2, Q_r(1, m)"))
+    $\dot x$/h$^{2}$ at $\sigma'$ = -h, $a'$ = 7/4, $m_{2}$ a root, $f_{10}$ = 2, $Q_{r}$(1, m)
     """
-    return _LETTERS.sub(_letter, text)
+    return re.sub(r"\^(\d+)", r"$^{\1}$", _LETTERS.sub(_letter, text)).replace("$$^", "^")
 
 
 def _letter(letter: re.Match[str]) -> str:
@@ -186,14 +186,9 @@ class Erratum:
         return ", ".join(f"{name} = {value}" for name, value in (self.verdict.witness or {}).items())
 
     @property
-    def trials(self) -> list[str]:
-        """Model by model, what was found and what the two statements say."""
-        return [trial.line() for trial in self.verdict.trials]
-
-    @property
     def numbers(self) -> list[tuple[str, str]]:
-        """The numbers that a person can check, each below the name of its kind."""
-        return [("witness", self.witness), *(("tried", line) for line in self.trials)]
+        """The numbers that a person can check, each with the name of its kind; trials say what both give."""
+        return [("witness", self.witness), *(("tried", trial.line()) for trial in self.verdict.trials)]
 
     @property
     def survives(self) -> str:

@@ -69,6 +69,7 @@ def section4() -> dict[str, object]:
         **_in_lambda(),
         **_sector(),
         **_rays(),
+        "fates": steps_of("fates", {}),
         "beside_gamma": beside_gamma(1),
         "shortening": shortening(1, -1),
     }

@@ -6,6 +6,7 @@ from typing import Any
 from singimpact import cache
 from singimpact.documents.document_steps import Mark, Section, Step, claims_of
 from singimpact.documents.rendering import wrapping
+from singimpact.paper.claims.index import places_in_paper
 from singimpact.paper.sections.section_templates import template_texts
 from singimpact.store import cache_folder
 
@@ -93,12 +94,12 @@ def _kept(kind: str, parts: Sequence[object], types: tuple[type, ...], derive: C
 
 def marks_of(shown: Iterable[Section]) -> dict[str, Mark]:
     """Claim id -> its mark, for every claim that sections show; a kept verdict is not computed again."""
-    ids = claims_of(shown)
-    if not ids:
-        return {}
     from singimpact.paper.claims import run, select
 
+    ids = claims_of(shown)
+    listed = {line["id"]: ", ".join(f"({n})" for n in line["equations"]) for line in places_in_paper()}
+    places = {name: f"{numbers} in the paper" for name, numbers in listed.items() if numbers}
     return {
-        verdict.id: Mark(verdict.kind, verdict.worth, verdict.printed if verdict.corrected else "")
-        for verdict in run(select(ids), cached=True)
+        each.id: Mark(each.kind, each.worth, each.printed if each.corrected else "", places.get(each.id, ""))
+        for each in run(select(ids) if ids else (), cached=True)
     }

@@ -1,6 +1,7 @@
 """The words of verdicts: their order, what a dependant inherits, and the theorems that go with them."""
 
 import importlib
+import math
 import pkgutil
 from fractions import Fraction
 from itertools import pairwise
@@ -191,12 +192,17 @@ def test_the_second_program_refuses_words_that_disagree(changes, why):
         check_words(written(**changes))
 
 
-def test_a_sample_names_its_point_and_fifteen_digits():
+def test_a_sample_names_its_point_and_nine_digits():
     names = sympy.symbols("a:h")
-    told = sample(sum(n * letter for n, letter in enumerate(names, 1)), sympy.sqrt(2))
+    total = sum(n * letter for n, letter in enumerate(names, 1))
+    told = sample(total, sympy.sqrt(2) * names[1] * names[2])
+    assert told == {"at": "h = 1, all else 0", "stated": "8", "derived": "0"}
+    assert sample(1 + total, total + sympy.sqrt(2))["derived"] == "1.41421356"
+    # where all letters are 0 or 1 the two are equal
+    told = sample(sympy.prod(names), sympy.prod(names) ** 2)
     at = "a = 3/5, b = 7/4, c = 2/9, d = 11/6, e = 5/13, f = 17/8, g = 1/7, h = 19/12"
-    total = sum(n * Fraction(part.partition(" = ")[2]) for n, part in enumerate(at.split(", "), 1))
-    assert told == {"at": at, "stated": str(total), "derived": "1.41421356237310"}
+    value = math.prod(Fraction(part.partition(" = ")[2]) for part in at.split(", "))
+    assert told == {"at": at, "stated": str(value), "derived": str(value**2)}
     assert sample(names[0] * 0 + 1, sympy.Integer(2))["at"] == "every point"
 
 

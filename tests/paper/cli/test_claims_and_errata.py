@@ -2,6 +2,7 @@
 
 import dataclasses
 import json
+import re
 import shutil
 from collections import Counter
 from xml.etree import ElementTree
@@ -109,6 +110,27 @@ def test_reasons_and_not_the_names_of_checks_are_printed(errata):
     for text in (errata.text(), errata.markdown(), errata.latex()):
         assert "fails:" not in text
         assert "positive for every k" not in text
+
+
+def test_a_person_reads_what_is_printed_and_what_to_read_and_no_text_of_programs(errata):
+    for text in (errata.latex(), errata.markdown()):
+        body = text.partition("Letters" if text.startswith("#") else "itemize")[2]  # letters come before they are used
+        listed, _, rest = body.partition("One by one")
+        assert listed.count("(slip). For $") >= 6
+        assert listed.count(" read $") >= len(errata.remarks)
+        assert not re.search(r"\w\*\w|\*\*\d|= (True|False)|tfrac\{1\}\{32\}", rest)
+    assert f"version {si.__version__}, " in errata.latex()
+
+
+def test_witnesses_are_numbers_that_need_no_machine(errata):
+    """Where letters are put into two expressions: few of them, and they are 1."""
+    points = [entry.verdict.witness for entry in errata if set(entry.verdict.witness) >= {"at", "stated", "derived"}]
+    assert len(points) >= 6
+    for point in points:
+        values = re.findall(r" = (\S+?)(?:,|$)", point["at"])
+        assert set(values) == {"1"}, point
+        assert len(values) <= 3, point
+        assert len(point["stated"] + point["derived"]) <= 16, point
 
 
 @pytest.mark.slow

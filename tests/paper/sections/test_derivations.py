@@ -10,6 +10,7 @@ import sys
 import pytest
 import sympy
 
+from singimpact import __version__
 from singimpact.documents import as_data, as_files, as_latex, as_text, claims_of, compiled, equations_of
 from singimpact.paper import CLAIMS, STRENGTH, a_symbol, m, mu_of_m, r_of_m, with_Q
 from singimpact.paper.claims import BEYOND
@@ -23,8 +24,11 @@ LABELS = [
     "e:pnew", "e:phinew", "s4-horizon-line", "s4-fold-eta", "s4-fold-form", "s4-psi", "e:pdef", "e:defq",
     "s4-next-sigma", "e:qdef", "e:hdef", "s4-Q1m", "s4-blowup", "e:fixm", "e:meq", "s4-r-of-m", "s4-Nr-1", "s4-Nr-2",
     "s4-Nr-3", "s4-Dh-form", "s4-gamma-leading", "s4-lambda-P", "s4-lambda-r", "s4-lambda-mu", "s4-lambda-gamma",
-    "s4-lambda-DG", "ratios-1", "ratios-rise-1", "s4b-continuous", "s4b-sector", "s4b-T2-bounds", "s4b-after",
-    "s4b-rays", "s4b-last-ray", "s4b-M", "s4b-bounds", "s4b-ratio", "s4b-below-one", "ratios-shorter-1", "s4b-eps",
+    "s4-lambda-DG", "fates-setting", "fates-polynomials", "fates-theorem", "fates-flights", "fates-first-hit",
+    "fates-relation", "fates-drift", "fates-rising", "fates-factor", "fates-product", "fates-behind", "fates-shorter",
+    "ratios-1", "ratios-rise-1", "s4b-continuous", "s4b-sector", "s4b-T2-bounds", "s4b-after",
+    "s4b-rays", "s4b-last-ray", "s4b-M", "s4b-bounds", "s4b-ratio", "s4b-below-one", "s4b-end", "ratios-shorter-1",
+    "s4b-cone", "s4b-order", "s4b-eps",
     "e:pdeg3", "s5-phi", "s5-hbar", "s5-f", "s5-g", "s5-fixed", "s5-r-of-m", "s5-jacobian", "s5-mu", "s5-lambda-P",
     "s5-lambda-r", "s5-gamma-leading", "ratios-2", "ratios-rise-2", "ratios-shorter-2", "s6-scaled", "s6-scaling",
     "s6-front", "s6-model", "s6-launch",
@@ -122,6 +126,34 @@ def test_the_two_routes_show_one_theory():
         (mu_of_lambda(2), mu_of_m().subs(m, lambda_ - 1)),
     ]:
         assert sympy.cancel(stated - derived) == 0
+
+
+def test_what_decides_a_lemma_exists(told, clone):
+    """The claims and the files of Coq that the proofs in section 4 name."""
+    (section,) = [each for each in told if each.name == "section4"]
+    words = " ".join(step.text for step in section.steps)
+    files = set(re.findall(r"[a-z]+\.v\b", words))
+    assert files == {path.name for path in (clone / "derivations" / "coq").glob("*.v")}
+    named = re.findall(r"(?:by|and|,) (t:[\w-]+)", words)
+    assert len(named) >= 8
+    assert set(named) <= set(CLAIMS)
+
+
+def test_a_document_has_a_title_with_the_version_an_abstract_and_contents(told, marks):
+    whole, one = as_latex(told, marks), as_latex(told[2:3], marks)
+    for text in (whole, one):
+        assert f"The authors of singimpact, version {__version__}, " in text
+        assert "Abstract" in text
+    assert r"\tableofcontents" in whole
+    assert r"\tableofcontents" not in one
+    assert r"\textbf{Theorem.}" in one
+    assert "[[" not in whole
+
+
+def test_the_number_of_an_equation_in_the_paper_stands_beside_it(told, marks):
+    assert marks["e:phi"].text == "corrected, proved, (9) in the paper"
+    assert marks["t:t2-exists"].place == ""
+    assert "(28) in the paper" in as_latex(told, marks)
 
 
 def test_writing_Q_is_refused_where_it_does_not_fit():

@@ -41,9 +41,9 @@ DEMO = Section(
 )
 PRINTED = r"a = -\frac{b}{2}"
 MARKS = {
-    "e:meq": Mark("proved", "proved"),
+    "e:meq": Mark("proved", "proved", place="(29) in the paper"),
     "p:odd": Mark("corrected", "proved", PRINTED),
-    "e:qdef": Mark("proved", "supported"),
+    "e:qdef": Mark("proved", "supported", place="(23) in the paper"),
 }
 
 
@@ -57,7 +57,7 @@ def test_latex_has_words_labels_and_verdicts():
     text = as_latex([DEMO], MARKS)
     assert r"\section*{Energy of $x'' + x = 0$ \& 100\% of it}" in text
     assert r"\#1 of \{two\} steps\_." in text
-    assert r"\tag*{\beside{e:meq}{proved}}\label{e:meq}" in text
+    assert r"\tag*{\beside{e:meq}{proved, (29) in the paper}}\label{e:meq}" in text
     assert r"\found{p:odd}{corrected, proved}\printed{a = -\frac{b}{2}}" in text
     assert r"\found{e:meq}" not in text
 
@@ -75,8 +75,8 @@ def test_a_claim_without_a_verdict_is_an_error():
 def test_markdown_and_data():
     assert "$$\n" + LONG + "\n$$" in as_markdown(DEMO, MARKS)
     assert as_data(DEMO, MARKS)["steps"][1]["claims"] == {
-        "e:meq": {"verdict": "proved", "effective": "proved", "printed": ""},
-        "p:odd": {"verdict": "corrected", "effective": "proved", "printed": PRINTED},
+        "e:meq": {"verdict": "proved", "effective": "proved", "printed": "", "place": "(29) in the paper"},
+        "p:odd": {"verdict": "corrected", "effective": "proved", "printed": PRINTED, "place": ""},
     }
 
 

@@ -221,7 +221,7 @@ def _phi_cusp(conditions: tuple[Any, ...]) -> Check:
             ),
         ],
         witness=lambda: {
-            "model": "x'' = (t^3 (1-t)^2)'', c = 0",
+            "path": "x = t^3 (1-t)^2, c = 0",
             "point": "(0, 0; 1)",
             "a": "0",
             "a'": str(touching.slope),

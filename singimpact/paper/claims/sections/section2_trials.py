@@ -52,11 +52,11 @@ def _cusps(flights: tuple[Any, Any], _printed: object, corrected: tuple[Any, ...
     touching, crossing = flights
     at_rest, passing = surfaces.touching_flight(touching), surfaces.touching_flight(crossing)
     ready = at_rest.acceleration == 0 and at_rest.slope != 0 and at_rest.velocity == 0
-    text = f"{at_rest.mixed} where x-dot = 0, {passing.mixed} where x-dot = {passing.velocity} on {crossing}"
+    names = [f"x = {str(path).replace('**', '^').replace('*', ' ')}" for path in flights]
     return Trial(
-        f"x = {touching}",
+        names[0],
         "v_(sigma t), not 0 at a cusp",
-        text,
+        f"{at_rest.mixed} where x-dot = 0, {passing.mixed} where x-dot = {passing.velocity} on {names[1]}",
         "not 0 at all",
         "not 0 where x-dot is not",
         not (ready and at_rest.mixed == 0),
@@ -70,8 +70,9 @@ def _lift_off(point: Place, *levels: object) -> Trial:
     height = float(point.model.flight(point.tau, 0.0, 0.01).x)
     flies = point.model.first_hit(point.tau, 0.0).status != Status.sticks
     old, new = (height > number(level, {"c": clearance}) for level in levels)
-    name = f"it lifts off, x_c(0.01) = {height:.9f}, c = {clearance:g}"
-    return Trial(point.name, name, str(flies), str(old), str(new), old == flies, new == flies)
+    outcome, *said = ("lifts off" if value else "stays" for value in (flies, old, new))
+    name = f"x_c = {height:.9f} at 0.01, c = {clearance:g}: the mass"
+    return Trial(point.name, name, outcome, said[0], said[1], old == flies, new == flies)
 
 
 def rest_at_tangency(model: tuple[str, tuple[str, str]], *_: object) -> Trial:

@@ -85,7 +85,7 @@ def _gradient(stated: tuple[sympy.Expr, int]) -> Check:
 def _m2_sign(stated: int) -> Check:
     """Sign of v after q o p^{-1} on the image of the m2 line, where v > 0 before."""
     ray = _ray(sympy.Integer(0), HALF)["v"]
-    root = sympy.Poly(fold.fixed_point_factors()[1].subs(r, HALF), m).nroots(n=20)[1]
+    root = sympy.Poly(fold.fixed_point_factors()[1].subs(r, HALF), m).nroots(n=8)[1]
     before = fold.gamma_leading().subs({m: root, fold.k: 1})
     after = _q_velocity(root)
     return every(

@@ -163,7 +163,7 @@ def _smoothness(stated: int) -> Check:
         witness=lambda: {
             "sigma": "0",
             "exponent of v in the flight time": f"{arcs.cube_root():.4f}",
-            "needed for C^infinity": "1",
+            "needed for a smooth F": "1",
         },
     )
 

@@ -127,7 +127,7 @@ def _second_derivative(order: int) -> Check:
     values = [sympy.diff(at_rest, sigma, n).subs(sigma, 0) for n in range(3)]
     return every(
         [(f"at a swan a = {values[0]}, a' = {values[1]}, a'' = {values[2]}: only a'' has a sign", values[order] != 0)],
-        witness=lambda: {"a_c0(tau_*)": str(values[0]), "a_c0''(tau_*)": f"{values[2]}, not 0"},
+        witness=lambda: {"a at tau_*": str(values[0]), "a_d2 at tau_*": f"{values[2]}, not 0"},
     )
 
 
