@@ -100,6 +100,6 @@ def marks_of(shown: Iterable[Section]) -> dict[str, Mark]:
     listed = {line["id"]: ", ".join(f"({n})" for n in line["equations"]) for line in places_in_paper()}
     places = {name: f"{numbers} in the paper" for name, numbers in listed.items() if numbers}
     return {
-        each.id: Mark(each.kind, each.worth, each.printed if each.corrected else "", places.get(each.id, ""))
-        for each in run(select(ids) if ids else (), cached=True)
+        one.id: Mark(one.kind, one.worth, one.printed if one.corrected else "", places.get(one.id, ""))
+        for one in run(select(ids) if ids else (), cached=True)
     }

@@ -70,9 +70,9 @@ def _lift_off(point: Place, *levels: object) -> Trial:
     height = float(point.model.flight(point.tau, 0.0, 0.01).x)
     flies = point.model.first_hit(point.tau, 0.0).status != Status.sticks
     old, new = (height > number(level, {"c": clearance}) for level in levels)
-    outcome, *said = ("lifts off" if value else "stays" for value in (flies, old, new))
+    outcome, *words = ("lifts off" if value else "stays" for value in (flies, old, new))
     name = f"x_c = {height:.9f} at 0.01, c = {clearance:g}: the mass"
-    return Trial(point.name, name, outcome, said[0], said[1], old == flies, new == flies)
+    return Trial(point.name, name, outcome, words[0], words[1], old == flies, new == flies)
 
 
 def rest_at_tangency(model: tuple[str, tuple[str, str]], *_: object) -> Trial:
