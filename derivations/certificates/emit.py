@@ -192,21 +192,29 @@ def composed(data: Any, w: Writer) -> Theorem:
         return w.every([], statement), f"intros; {proof}"
     if data["order"] is None:
         return equal(data, w, *texts, *quotients, nonzero)
-    # what is beyond the order stands in the statement
+    return up_to_the_order(data, w, texts, quotients, nonzero)
+
+
+def up_to_the_order(data: Any, w: Writer, texts: list[str], quotients: list[Any], nonzero: list[str]) -> Theorem:
+    """Two quotients differ by a rest that is named, and its numerator is beyond the order."""
     (a, b), (p, q) = quotients
+    multiplier, cofactor, relation = map(w.read, data["relation"] or ([], [], []))
+    conditions, difference = [*nonzero, *w.nonzero((b, q))], a * q - p * b
     if data["relation"] is None:
-        statement = w.every(
-            [*nonzero, *w.nonzero((b, q))], f"{texts[0]} = {texts[1]} + {w.quotient(a * q - p * b, b * q)}"
+        rest, below, equation = difference, b * q, "cbv beta in *; field; nonzero."
+    else:
+        rest, below = multiplier * difference - cofactor * relation, multiplier * b * q
+        conditions += [*w.nonzero([multiplier]), f"{w.text(relation)} = 0"]
+        parts = [w.text(part) for part in (a, b, p, q, multiplier, cofactor, relation, rest)]
+        equation = (
+            f"cbv beta in *; apply (by_relation_to_order _ _ _ {' '.join(parts)}); "
+            "[field; nonzero | field; nonzero | field; nonzero | | | | | ]; try assumption; try lra; ring."
         )
-        return statement, "intros; cbv beta in *; field; nonzero."
-    multiplier, cofactor, relation = map(w.read, data["relation"])
-    rest = multiplier * (a * q - p * b) - cofactor * relation
-    conditions = [*nonzero, *w.nonzero((b, q, multiplier)), f"{w.text(relation)} = 0"]
-    parts = [w.text(part) for part in (a, b, p, q, multiplier, cofactor, relation, rest)]
-    return w.every(conditions, f"{texts[0]} = {texts[1]} + {w.quotient(rest, multiplier * b * q)}"), (
-        f"intros; cbv beta in *; apply (by_relation_to_order _ _ _ {' '.join(parts)}); "
-        "[field; nonzero | field; nonzero | field; nonzero | | | | | ]; try assumption; try lra; ring."
-    )
+    if w.letters.with_degree(below, data["weights"], 0) == 0:
+        raise ValueError(f"{data['says']}: its denominator vanishes in the limit")
+    beyond, proof = agreement(data, w, w.text(rest), "0", data["order"] + 1)
+    statement = f"{texts[0]} = {texts[1]} + {w.quotient(rest, below)} /\\ {beyond}"
+    return w.every(conditions, statement), f"intros; split.\n  - {equation}\n  - {proof}"
 
 
 # ---- limits

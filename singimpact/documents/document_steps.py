@@ -18,7 +18,8 @@ class Step:
 
     Parameters
     ----------
-    text : words; formulas in them stand between dollar signs, everything else is plain text.
+    text : words; formulas in them stand between dollar signs, heads such as [[Theorem.]] between double brackets, and
+        everything else is plain text.
     equation : LaTeX of the displayed equation, without an environment; several lines, aligned at their ``&``, are a
         tuple; empty when the step is words alone.
     label : the label of the equation, the paper's where it has one, e.g. ``e:meq``; what the golden files know it by.

@@ -13,7 +13,7 @@ from singimpact.documents.rendering import environment, wrapping
 from singimpact.inputs import checked_keywords
 from singimpact.paper.claims.claim import Claim, Verdict
 from singimpact.paper.claims.index import Entry, places_in_paper
-from singimpact.paper.sections.stored_sections import kept_legend
+from singimpact.paper.sections.stored_sections import LETTERS, kept_legend
 
 # Where a claim stands in the paper: page, equation, theorem and line, for a reader with the paper beside him.
 
@@ -273,8 +273,9 @@ class Errata(Sequence[Erratum]):
             "places": lambda group: "; ".join(dict.fromkeys(str(entry.place) for entry in group)),
             "in_letters": in_letters,
             "wrapping": wrapping,
+            "models": legend[len(LETTERS) :],
         }
-        fields = {"errata": self, "paper": PAPER, "version": VERSION, "grades": GRADES, "legend": legend}
+        fields = {"errata": self, "paper": PAPER, "version": VERSION, "grades": GRADES, "letters": LETTERS}
         return str(environment().from_string(template).render(fields | functions))
 
     def as_dict(self) -> dict[str, Any]:
