@@ -119,21 +119,8 @@ Ltac continuous := match goal with
 (* what `field` asks of denominators, which may be parts of those that are not 0 *)
 Ltac nonzero := repeat split; first [exact I | assumption | lra | match goal with
   | H : ?p <> 0 |- ?q <> 0 =>
-      let E := fresh in intro E; apply H; first [lra | (rewrite E; field) | nra | (rewrite E; nra)]
+      let E := fresh in intro E; apply H; first [lra | (rewrite E; field) | nra | (rewrite E; nra) | (field_simplify_eq; [lra | nonzero])]
   end].
-
-(* ---- motions *)
-
-Lemma derivative_is f x l k : derivable_pt_lim f x l -> l = k -> derivable_pt_lim f x k.
-Proof. intros H E. now rewrite <- E. Qed.
-Ltac differentiate := match goal with
-  | |- derivable_pt_lim (fun x => @?f x + @?g x) ?a _ => apply (derivable_pt_lim_plus f g a); differentiate
-  | |- derivable_pt_lim (fun x => ?c * x ^ ?n) ?a _ => apply (derivable_pt_lim_scal (fun x => x ^ n)), derivable_pt_lim_pow
-  | |- derivable_pt_lim (fun x => ?c) ?a _ => apply derivable_pt_lim_const
-  end.
-Ltac derive := match goal with
-  | |- derivable_pt_lim _ _ _ => eapply derivative_is; [differentiate | simpl INR; simpl pred]
-  end.
 
 (* ---- roots of a polynomial, given by the list of its coefficients *)
 
@@ -367,6 +354,38 @@ Qed.
 (* ---- equal expressions *)
 Lemma same v a b : normal (a - b)%E = [] -> value v a = value v b.
 Proof. intro H. assert (W := normal_is v (a - b)%E). rewrite H in W. cbn [value sum] in W. lra. Qed.
+
+(* ---- their derivatives by a letter *)
+Fixpoint slope (k : nat) (e : expr) : expr :=
+  (match e with
+  | Num _ => 0 | Letter n => if Nat.eqb n k then 1 else 0 | Add a b => slope k a + slope k b
+  | Sub a b => slope k a - slope k b | Mul a b => slope k a * b + a * slope k b | Opp a => - slope k a
+  | Over a p => slope k a / p | Pow a n => match n with O => 0 | S m => Num (Z.of_nat n) * a ^ m * slope k a end
+  end)%E.
+Definition letter_at (v : nat -> R) (k : nat) (x : R) (n : nat) : R := if Nat.eqb n k then x else v n.
+Lemma derivative_is f x l k : derivable_pt_lim f x l -> l = k -> derivable_pt_lim f x k.
+Proof. intros H E. now rewrite <- E. Qed.
+Lemma slope_is v k e x : derivable_pt_lim (fun y => value (letter_at v k y) e) x (value (letter_at v k x) (slope k e)).
+Proof.
+  induction e as [z|n|a IHa b IHb|a IHa b IHb|a IHa b IHb|a IHa|a IHa p|a IHa n]; cbn [slope value].
+  - apply derivable_pt_lim_const.
+  - unfold letter_at at 1. destruct (Nat.eqb n k); [apply derivable_pt_lim_id|apply derivable_pt_lim_const].
+  - now apply (derivable_pt_lim_plus (fun y => value (letter_at v k y) a) (fun y => value (letter_at v k y) b)).
+  - now apply (derivable_pt_lim_minus (fun y => value (letter_at v k y) a) (fun y => value (letter_at v k y) b)).
+  - now apply (derivable_pt_lim_mult (fun y => value (letter_at v k y) a) (fun y => value (letter_at v k y) b)).
+  - now apply (derivable_pt_lim_opp (fun y => value (letter_at v k y) a)).
+  - eapply derivative_is.
+    + apply (derivable_pt_lim_mult (fun y => value (letter_at v k y) a) (fun _ => / IZR (Zpos p)));
+        [apply IHa|apply derivable_pt_lim_const].
+    + unfold Rdiv. ring.
+  - eapply derivative_is.
+    + apply (derivable_pt_lim_comp (fun y => value (letter_at v k y) a) (fun y => y ^ n));
+        [apply IHa|apply derivable_pt_lim_pow].
+    + destruct n as [|m]; cbn [value]; [simpl; ring|]. rewrite <- INR_IZR_INZ. cbn [pred]. ring.
+Qed.
+Lemma derivative v k e d x : normal (slope k e - d)%E = [] ->
+  derivable_pt_lim (fun y => value (letter_at v k y) e) x (value (letter_at v k x) d).
+Proof. intro H. rewrite <- (same _ (slope k e) d H). apply slope_is. Qed.
 
 (* ---- expressions that vanish to an order: each variable stands with a power of h *)
 Fixpoint weight (w m : list nat) : nat :=

@@ -54,13 +54,6 @@ class Writer:
             return outer
         return f"((fun {' '.join(self.names[n] for n in images)} : R => {outer}) {' '.join(images.values())})"
 
-    def in_powers(self, polynomial: Any, index: int) -> str:
-        """A polynomial as a sum over the powers of one letter."""
-        powers = range(self.letters.degree(polynomial, index) + 1)
-        parts = [(n, self.letters.coefficient(polynomial, index, n)) for n in powers]
-        terms = [f"{self.text(part)} * {self.names[index]} ^ {n}" for n, part in parts if part != 0]
-        return f"({' + '.join(terms) or '0'})"
-
     def every(self, conditions: Sequence[str], statement: str, names: Sequence[str] | None = None) -> str:
         names = self.names if names is None else names
         bound = f"forall {' '.join(names)} : R, " if names else ""
@@ -68,6 +61,10 @@ class Writer:
 
     def nonzero(self, polynomials: Sequence[Any]) -> list[str]:
         return [f"{self.text(polynomial)} <> 0" for polynomial in polynomials if not polynomial.is_constant()]
+
+    def point(self) -> str:
+        """The values of the letters, by their places."""
+        return f"(fun n => nth n {listed(self.names)} 0)"
 
     def quoted(self, text: str) -> str:
         """The text of a polynomial as an expression of Coq, its letters as variables."""
@@ -142,8 +139,7 @@ def definite(data: Any, w: Writer) -> Theorem:
 def agreement(data: Any, w: Writer, left: str, right: str, order: int | None) -> Theorem:
     """Two polynomials are equal, or below a weighted degree."""
     if order is None:
-        at = f"(fun n => nth n {listed(w.names)} 0)"
-        proof = f"refine (same {at} {w.quoted(left)} {w.quoted(right)} _); vm_compute; reflexivity."
+        proof = f"refine (same {w.point()} {w.quoted(left)} {w.quoted(right)} _); vm_compute; reflexivity."
         return f"{left} = {right}", proof
     weights, difference = data["weights"], f"{left} - {right}"
     moved = " ".join(f"(h' ^ {n} * {name})" for n, name in zip(weights, w.names, strict=True))
@@ -201,19 +197,20 @@ def up_to_the_order(data: Any, w: Writer, texts: list[str], quotients: list[Any]
     multiplier, cofactor, relation = map(w.read, data["relation"] or ([], [], []))
     conditions, difference = [*nonzero, *w.nonzero((b, q))], a * q - p * b
     if data["relation"] is None:
-        rest, below, equation = difference, b * q, "cbv beta in *; field; nonzero."
+        rest, below, equation = difference, (b, q), "cbv beta in *; field; nonzero."
     else:
-        rest, below = multiplier * difference - cofactor * relation, multiplier * b * q
+        rest, below = multiplier * difference - cofactor * relation, (multiplier, b, q)
         conditions += [*w.nonzero([multiplier]), f"{w.text(relation)} = 0"]
         parts = [w.text(part) for part in (a, b, p, q, multiplier, cofactor, relation, rest)]
         equation = (
             f"cbv beta in *; apply (by_relation_to_order _ _ _ {' '.join(parts)}); "
             "[field; nonzero | field; nonzero | field; nonzero | | | | | ]; try assumption; try lra; ring."
         )
-    if w.letters.with_degree(below, data["weights"], 0) == 0:
+    if any(w.letters.with_degree(factor, data["weights"], 0) == 0 for factor in below):
         raise ValueError(f"{data['says']}: its denominator vanishes in the limit")
     beyond, proof = agreement(data, w, w.text(rest), "0", data["order"] + 1)
-    statement = f"{texts[0]} = {texts[1]} + {w.quotient(rest, below)} /\\ {beyond}"
+    named = f"{w.text(rest)} / ({' * '.join(map(w.text, below))})"
+    statement = f"{texts[0]} = {texts[1]} + {named} /\\ {beyond}"
     return w.every(conditions, statement), f"intros; split.\n  - {equation}\n  - {proof}"
 
 
@@ -254,14 +251,19 @@ def value(data: Any, w: Writer) -> Theorem:
 # ---- motions
 
 
+def derivative(w: Writer, index: int, one: Any, two: Any) -> Theorem:
+    """One polynomial is the derivative of another by a letter."""
+    name, texts = w.names[index], (w.text(one), w.text(two))
+    quoted = " ".join(map(w.quoted, texts))
+    proof = f"refine (derivative {w.point()} {index} {quoted} {name} _); vm_compute; reflexivity."
+    return f"derivable_pt_lim (fun {name} => {texts[0]}) {name} {texts[1]}", proof
+
+
 def solution(data: Any, w: Writer, y: Any, index: int, clock: str, scale: str, order: int | None) -> list[Theorem]:
     """The derivatives of y, and that it solves the equation of motion up to the order."""
     speed = y.derivative(index)
-    second, t = speed.derivative(index), w.names[index]
-    claims = [
-        (f"derivable_pt_lim (fun {t} => {w.in_powers(one, index)}) {t} {w.text(two)}", "derive; ring.")
-        for one, two in ((y, speed), (speed, second))
-    ]
+    second = speed.derivative(index)
+    claims = [derivative(w, index, one, two) for one, two in ((y, speed), (speed, second))]
     height = f"({scale} * {w.text(y)})"
     terms = [f"{scale} * {w.text(w.read(jet))} * {clock} ^ {n}" for n, jet in enumerate(data["acceleration"]) if jet]
     terms += [

@@ -61,6 +61,11 @@ def negative_on(expression: Any, variable: Any, low: Any, high: Any) -> bool:
     return positive_on(-expression, variable, low, high)
 
 
+def negative_in(expression: Any, box: Box) -> bool:
+    """Proved to be negative on an open box."""
+    return positive_in(-expression, box)
+
+
 def positive_in(expression: Any, box: Box) -> bool:
     """Proved to be positive on an open box, for all variables at once: see `positive_on`.
 

@@ -55,8 +55,7 @@ class Limits:
 
 LIMITS = Limits()
 _TOKEN = re.compile(
-    r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[^\W\d]\w*)|(?P<sign>\*\*|[-+*/(),^.]))",
-    re.ASCII,
+    r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[^\W\d]\w*)|(?P<sign>\*\*|[-+*/(),^.]))", re.ASCII
 )
 # Analytic functions in terms of `FUNCTIONS`, which are put in when an expression is read
 DEFINITIONS = {

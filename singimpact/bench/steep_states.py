@@ -260,11 +260,7 @@ def flown(seed: int, number: int) -> Array:
 
 
 def check(
-    count: int,
-    seed: int,
-    executor: Executor | None = None,
-    output: str | Path | None = None,
-    parametric: bool = False,
+    count: int, seed: int, executor: Executor | None = None, output: str | Path | None = None, parametric: bool = False
 ) -> RandomStates:
     """Fly `count` steep states, rounded up to whole cases, and a tenth more smooth ones.
 

@@ -1,6 +1,6 @@
 """Ways to decide a statement: an identity of exact expressions, and signs proved on an interval."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
 from itertools import product
 from typing import Any
@@ -8,6 +8,7 @@ from typing import Any
 import sympy
 
 from singimpact.algebra.certificates import identical
+from singimpact.algebra.derivations import At, substitution
 from singimpact.paper.claims.claim import Check
 
 _SAMPLES = [Fraction(n, d) for n, d in ((3, 5), (7, 4), (2, 9), (11, 6), (5, 13), (17, 8), (1, 7), (19, 12))]
@@ -37,6 +38,21 @@ def same(left: Any, right: Any) -> bool:
     equal = _cancels(sympy.together(left - right))
     if equal:
         identical(left, right)
+    return equal
+
+
+def agree(outer: Any, images: Mapping[Any, Any], stated: Any) -> bool:
+    """Whether a function with images put for its variables, at once, is the stated one, with its certificate.
+
+    Examples
+    --------
+    >>> x, y = sympy.symbols("x y")
+    >>> agree(x * y, {x: y, y: 1 / x}, y / x), agree(x * y, {x: y}, y)
+    (True, False)
+    """
+    equal = _cancels(sympy.together(outer.subs(images, simultaneous=True) - stated))
+    if equal:
+        substitution(At(outer, images), stated)
     return equal
 
 

@@ -121,6 +121,7 @@ def h() -> tuple[sympy.Expr, sympy.Expr]:
 
     A first hit comes before the horizon, and t grows with eta, so the new eta is the negative root.
     """
+    substitution(At(psi_p()[1], {eta: -w}), psi_q()[1], where=(w**2 - Q_r(), w))
     return psi_q()[0], -sympy.sqrt(Q_r())
 
 

@@ -13,7 +13,6 @@ from scipy.optimize import brentq
 
 from singimpact.algebra.derivations import motion
 from singimpact.algebra.numbers import Array, as_float
-from singimpact.algebra.solving import halved, secant
 from singimpact.impact_oscillator import ImpactOscillator
 from singimpact.oscillator.model import Oscillator
 from singimpact.paper.trials import true_orbits
@@ -45,58 +44,6 @@ def flow(model: Oscillator) -> Callable[[float, float, float, float], Array]:
 def clearance(model: Oscillator) -> float:
     """c as a double."""
     return as_float(model.clearance)
-
-
-def _identity_error(model: ImpactOscillator, tau: float, v: float, t: float) -> float:
-    """The error of x_tau = x-dot - v x_c - A x_v at a point of V_c."""
-    at = flow(model)
-    c = clearance(model)
-
-    def slope(d_tau: float, d_x: float, d_v: float) -> float:
-        ahead = at(tau + d_tau, c + d_x, v + d_v, t)[0]
-        behind = at(tau - d_tau, c - d_x, v - d_v, t)[0]
-        return float(ahead - behind) / (2 * STEP)
-
-    x_tau, x_x, x_v = slope(STEP, 0, 0), slope(0, STEP, 0), slope(0, 0, STEP)
-    speed = float(at(tau, c, v, t)[1])
-    push = (float(at(tau, c, v, STEP)[1]) - float(at(tau, c, v, -STEP)[1])) / (2 * STEP)
-    return abs(x_tau - (speed - v * x_x - push * x_v)) / (1 + abs(x_x) + abs(x_v))
-
-
-def gradients() -> Tried:
-    """The derivatives of x_c at first hits from random states of two models."""
-    rng = np.random.default_rng(SEED)
-    errors = [
-        _identity_error(model, float(tau), float(v), float(model.first_hit(tau, v).flight_time))
-        for model in true_orbits.MODELS.values()
-        for tau, v in zip(rng.uniform(0, 3, 6), rng.uniform(0.2, 1.5, 6), strict=True)
-    ]
-    return f"x_tau = x-dot - v x_c - A x_v at {len(errors)} points of V_c on two models", max(errors) < 1e-6
-
-
-def zero_set_points() -> Tried:
-    """From rest at times with a > 0: at landing (tau', w) reversed, the sheet has v_tt = -a(tau)/(t dy/dv)."""
-    places = [
-        (model, tau) for model in true_orbits.MODELS.values() for tau in (0.1, 2.9) if model.acceleration(tau) > 0
-    ]
-    worst = max(abs(_second_over_expected(model, tau) - 1) for model, tau in places)
-    return f"at {len(places)} points of Z on two models it is -a_c(tau)/(t dy/dv) (to {worst:.0e})", worst < 1e-4
-
-
-def _second_over_expected(model: ImpactOscillator, tau: float, h: float = 1e-2) -> float:
-    """The second derivative of v along the sheet after the involution, at a point of Z found from rest, by its law."""
-    at, c = flow(model), clearance(model)
-    t = float(model.first_hit(tau, 0.0).flight_time)
-    w = float(at(tau, c, 0.0, t)[1])
-    values = [_launch(at, c, tau + t, w, -t + n * h) for n in (-2, -1, 0, 1, 2)]
-    second = float(np.dot([-1, 16, -30, 16, -1], values)) / (12 * h * h)
-    rate = (float(at(tau + t, c, w + STEP, -t)[0]) - float(at(tau + t, c, w - STEP, -t)[0])) / (2 * STEP)
-    return second / (-float(model.acceleration(tau)) / rate)
-
-
-def _launch(at: Callable[..., Array], c: float, tau: float, v: float, time: float) -> float:
-    """The launch velocity near v of a flight that is back after `time`."""
-    return float(secant(lambda speed: float(at(tau, c, speed, time)[0]) - c, v, v + 1e-6, 30, 1e-15))
 
 
 @dataclass(frozen=True)
@@ -169,31 +116,6 @@ def pressed_point() -> tuple[Tried, dict[str, str]]:
     return (name, min(heights) > 0 and max(heights) < c), numbers
 
 
-def jumps_are_grazes() -> Tried:
-    """Bisect every jump of the flight time along lines tau = const, and look at the impact velocity beside it."""
-    lines = [(model, float(tau)) for model in true_orbits.MODELS.values() for tau in np.linspace(0.2, 3.0, 12)]
-    touches = [_touch(model, tau, *ends) for model, tau in lines for ends in _jumps(model, tau)]
-    name = (
-        f"{len(touches)} jumps of F located on {len(lines)} lines of two models, each with |x-dot| at the first touch "
-        f"below {max(touches, default=0.0):.0e}"
-    )
-    return name, len(touches) >= 5 and max(touches) < 1e-3
-
-
-def _jumps(model: ImpactOscillator, tau: float, count: int = 1501, least: float = 0.3) -> list[tuple[float, float]]:
-    """Neighbours between which the flight time jumps, of so many velocities."""
-    v = np.linspace(0.05, 2.5, count)
-    times = np.asarray(model.impact_map(tau, v).flight_time)
-    return [(float(v[at]), float(v[at + 1])) for at in np.flatnonzero(np.abs(np.diff(times)) > least)]
-
-
-def _touch(model: ImpactOscillator, tau: float, low: float, high: float) -> float:
-    """The smaller |x-dot| at the first hit on the two sides of a jump, after bisection to 1e-13."""
-    start = float(model.first_hit(tau, low).flight_time)
-    ends = halved(lambda v: abs(float(model.first_hit(tau, v).flight_time) - start) <= 0.1, low, high, 1e-13)
-    return float(min(abs(float(model.first_hit(tau, v).velocity)) for v in ends))
-
-
 @lru_cache(maxsize=1)
 def horizon_images() -> Tried:
     """Flights run backwards from rest to an earlier crossing: launched there they touch c at rest (points of H)."""
@@ -225,21 +147,6 @@ def _touching(model: ImpactOscillator, tau: float) -> float | None:
 def _crossings(heights: Array) -> Array:
     """Indices before which the sign changes."""
     return np.flatnonzero(np.sign(heights[1:]) != np.sign(heights[:-1]))
-
-
-def common_orbits() -> Tried:
-    """From p(z) and from phi(z) one reaches the same state at a third time."""
-    rng = np.random.default_rng(SEED)
-    count, worst = 0, 0.0
-    for model in true_orbits.MODELS.values():
-        at, c = flow(model), clearance(model)
-        for tau, v in zip(rng.uniform(0, 3, 8), rng.uniform(0.2, 1.5, 8), strict=True):
-            hit = model.first_hit(tau, v)
-            t, w = float(hit.flight_time), float(hit.velocity)
-            one, two = at(tau, c, v, t + 0.7), at(tau + t, c, w, 0.7)
-            count += 1
-            worst = max(worst, abs(float(one[0]) - float(two[0])), abs(float(one[1]) - float(two[1])))
-    return f"{count} flights of two models: p(z) and phi(z) on one orbit to {worst:.0e}", worst < 1e-9
 
 
 @lru_cache(maxsize=1)

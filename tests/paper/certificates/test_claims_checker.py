@@ -96,6 +96,13 @@ def test_a_certificate_without_its_sentence_is_refused_in_a_file(folder, tmp_pat
     assert "refused: certificate 0: it says nothing" in judged(tmp_path / "e_yeq.json").stdout
 
 
+def test_every_proved_claim_has_a_certificate_of_its_own(folder):
+    for path in folder.iterdir():
+        told = json.loads(path.read_text(encoding="utf-8"))
+        proved = (told["corrected_kind"] or told["verdict"]) in ("proved", "proved modulo")
+        assert told["certificates"] or not proved, told["id"]
+
+
 def test_the_list_has_the_words_of_each_claim(folder):
     stated = json.loads(claims_checker.STATED.read_text(encoding="utf-8"))["claims"]
     for path in folder.iterdir():

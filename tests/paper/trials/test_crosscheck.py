@@ -3,7 +3,7 @@
 import pytest
 
 from singimpact.contact import Contact
-from singimpact.paper import gamma_cases, scipy_flow, sides
+from singimpact.paper import gamma_cases, scipy_flow
 from singimpact.paper.trials import true_sheet
 from singimpact.theory import Sheet, sheet
 
@@ -47,7 +47,3 @@ def test_gamma_against_the_reference(reference):
     duffing = float(reference["gamma.C2[duffing w=1.7,c=0.3,r=0.6,d=0.1,k3=0.3]"])
     assert found["linear, omega 2, tangency, DOP853"] == pytest.approx(linear, rel=1e-8)
     assert found["damped Duffing, omega 1.7, tangency, DOP853"] == pytest.approx(duffing, rel=1e-8)
-
-
-def test_sides_of_gamma():
-    assert {(case.below, case.above) for case in sides()} == {("chatter", "lost")}

@@ -1,26 +1,10 @@
-"""Jumps and crossings that trials look for are found, and words of a model as functions."""
-
-from types import SimpleNamespace
+"""Crossings that trials look for are found, and words of a model as functions."""
 
 import numpy as np
 import pytest
 
 from singimpact.algebra import DOUBLES, evaluate, function_of, parse
-from singimpact.paper.trials import surfaces, universal_orbits
-
-
-def test_jumps_are_found_between_neighbours_and_smooth_changes_are_not():
-    places = np.array([0.3, 1.111, 1.9])
-
-    def impact_map(_tau, v):
-        steep = 3 * np.tanh(40 * (v - 0.7))  # changes by 0.05 between neighbours, without a jump
-        return SimpleNamespace(flight_time=steep + np.searchsorted(places, v))
-
-    found = surfaces._jumps(SimpleNamespace(impact_map=impact_map), 0.0, count=6001)
-    assert len(found) == len(places)
-    for (low, high), place in zip(found, places, strict=True):
-        assert low <= place <= high
-        assert high - low < 1e-3
+from singimpact.paper.trials import universal_orbits
 
 
 def test_crossings_are_counted_and_jumps_are_not(monkeypatch):

@@ -10,9 +10,10 @@ from singimpact.oscillator.model import Oscillator
 from singimpact.paper.claims.claim import Check, Encoding
 from singimpact.paper.claims.sections.section4a_blowup import HALF, THREE_HALVES
 from singimpact.paper.claims.sections.section4a_multipliers import ray_m3
-from singimpact.paper.claims.verifiers import every, identity, is_zero
+from singimpact.paper.claims.verifiers import agree, every, identity, is_zero
 from singimpact.paper.routes import fold
-from singimpact.paper.routes.implicit import a_symbol, at_contact, sigma, t, v, y_c
+from singimpact.paper.routes.fold import w
+from singimpact.paper.routes.implicit import X, Y, a_symbol, at_contact, sigma, t, v, y_c
 
 lam = sympy.Symbol("lambda")
 _SCALE = sympy.Symbol("h")
@@ -69,8 +70,10 @@ def _in_r(stated: tuple[int, int]) -> Check:
     """(p, q): lambda^2 mu = r^p/lambda^q at the fixed point."""
     rate, _ = fold.h_blown_up()
     power, root = stated
-    found = fold.r_of_m() ** power / rate**root
-    return identity(lambda: rate**2 * fold.N_r_at_fixed_points(), "derived from the blow-up at a tangency")(found)
+    r, multiplier = fold.r_of_m(), fold.N_r_at_fixed_points()
+    composed = agree(X**2 * Y - w**power / X**root, {X: rate, Y: multiplier, w: r}, 0)
+    derived = identity(lambda: rate**2 * multiplier, "derived from the blow-up at a tangency")(r**power / rate**root)
+    return every([derived, ("so are lambda^2 mu and r put in", composed)])
 
 
 # Models with a border orbit, and two clearances between which it lies.

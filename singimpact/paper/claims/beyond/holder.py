@@ -17,7 +17,7 @@ from singimpact.dynamics.threshold import threshold
 from singimpact.flights.orbits import orbit_segment
 from singimpact.paper.claims.beyond.every_order import j, rising
 from singimpact.paper.claims.claim import Check, Encoding
-from singimpact.paper.claims.verifiers import Finding, every, measured_on, same
+from singimpact.paper.claims.verifiers import Finding, agree, every, measured_on
 from singimpact.paper.trials.true_orbits import System
 from singimpact.theory.fixed_points import multipliers
 
@@ -94,10 +94,10 @@ def _between(stated: tuple[int, int, int]) -> Check:
         [
             (
                 "alpha = ln(1/l)/ln mu = 1/(1 + 2w), w = ln(P/Q)/ln(1/l) > 0 as P > Q: alpha < 1",
-                same(alpha.subs(weight, 0), 1),
+                agree(alpha, {weight: 0}, 1),
             ),
             *rising(),
-            ("so w < j/3 and alpha > 3/(3 + 2j)", same(alpha.subs(weight, j / 3), 3 / (3 + 2 * j))),
+            ("so w < j/3 and alpha > 3/(3 + 2j)", agree(alpha, {weight: j / 3}, 3 / (3 + 2 * j))),
             (f"3/(3 + 2j) is at least {p}/({q} + {s}j) for every j", enough),
         ],
         witness=lambda: _fails(p, q, s),

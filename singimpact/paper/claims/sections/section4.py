@@ -12,7 +12,7 @@ from singimpact.algebra.rings import to_sympy
 from singimpact.contact.contact import rest_acceleration
 from singimpact.paper.claims.claim import Check, Encoding, Statement
 from singimpact.paper.claims.sections.section4_trials import TRIALS as TRIALS
-from singimpact.paper.claims.verifiers import every, identity, is_zero, root_of_line, same
+from singimpact.paper.claims.verifiers import agree, every, identity, is_zero, root_of_line, same
 from singimpact.paper.routes import fold, implicit as route
 from singimpact.paper.routes.implicit import X, Y, a_symbol, f_symbol, sigma, t, v
 from singimpact.paper.trials import true_sheet
@@ -173,6 +173,11 @@ def _saddle(stated: int) -> Check:
     )
 
 
+def _at_launch(stated: sympy.Expr) -> Check:
+    """y_c where the flight starts."""
+    return every([("y_c is what is stated at t = 0", agree(route.y_c(4), {t: 0}, stated))])
+
+
 CLAIMS = {
     "e:lin": Encoding(
         (-c + sympy.cos(omega * tau), 2 * sympy.pi / omega),
@@ -185,7 +190,7 @@ CLAIMS = {
     ),
     "s4-zeros": Encoding(c**2 - 1, _zeros, (c**2 - 4, c - 1, c**2 + 1)),
     "e:phi": Encoding(sympy.Integer(0), _phi, (-t, t / 2), lambda: t),
-    "e3": Encoding(v, identity(lambda: route.y_c(4).subs(t, 0)), (2 * v, v + sigma, v + v**2)),
+    "e3": Encoding(v, _at_launch, (2 * v, v + sigma, v + v**2)),
     "e:vtaylor-t2": _vtaylor(
         ((0, 2),), (HALF * (-THIRD * a1 + HALF * a * b),), ((HALF * (-THIRD * a1 - a * b / 6),), (-a1 / 6,))
     ),

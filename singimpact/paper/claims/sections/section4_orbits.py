@@ -10,9 +10,9 @@ from typing import Any
 
 import sympy
 
-from singimpact.algebra.certificates import positive_on
+from singimpact.algebra.certificates import negative_in, positive_in, positive_on
 from singimpact.paper.claims.claim import Check
-from singimpact.paper.claims.verifiers import every, is_zero, same
+from singimpact.paper.claims.verifiers import agree, every, is_zero, same
 from singimpact.paper.routes import ratios
 from singimpact.paper.routes.implicit import sigma, t
 from singimpact.paper.routes.ratios import l
@@ -43,7 +43,7 @@ def relation(j: int) -> list[Part]:
     """Signs of the forms of the flights between sigma = -S and -l S."""
     launch, landing = ratios.reduced(j)
     falls = same(sympy.diff(ratios.by_ratio(j).launch, l), -landing)
-    closed_form = all(is_zero(form.subs(l, lambda_) - velocity) for form, velocity in ((launch, P(j)), (landing, Q(j))))
+    closed_form = all(agree(form, {l: lambda_}, velocity) for form, velocity in ((launch, P(j)), (landing, Q(j))))
     return [
         (
             f"v_c(-S, (1-l)S) = b S^{j + 1} (1-l)(P + O(S)), impact speed b S^{j + 1} (1-l)(Q + O(S)), P = {launch}, "
@@ -85,7 +85,9 @@ def smooth(j: int) -> Callable[[Any], Check]:
 
     def verify(stated: sympy.Expr) -> Check:
         none = ("smooth of every order: no least order is left", stated == sympy.oo)
-        return every([*relation(j), *saddle(j), none], modulo=(STABLE,))
+        shape = agree(ratios.by_ratio(j).launch, {l: lambda_}, (1 - lambda_) * P(j))
+        form = (f"gamma is v = b S^{j + 1} ((1 - lambda) {P(j)} + O(S)), smooth in S", shape)
+        return every([*relation(j), *saddle(j), form, none], modulo=(STABLE,))
 
     return verify
 
@@ -151,10 +153,9 @@ def shortening(j: int, side: int) -> list[Part]:
     u = sympy.Symbol("u")
     corner = {sigma: u} if side > 0 else {sigma: u - t / 3}
     again = sympy.expand(launch.subs({sigma: sigma + t, t: rho * t}, simultaneous=True) - rho * landing)
-    terms = sympy.Poly(sympy.expand(again.subs(corner, simultaneous=True)), u, t, rho)
-    growing = sympy.Poly(sympy.diff(launch, t), sigma, t)
+    box = {u: (0, sympy.oo), t: (0, sympy.oo)}
     landed = sympy.Poly(sympy.expand(landing.subs(corner) / t), u, t)
-    definite = all(value > 0 for value in landed.coeffs()) and {(j, 0), (0, j)} <= set(landed.monoms())
+    definite = positive_in(landed.as_expr(), box) and {(j, 0), (0, j)} <= set(landed.monoms())
     return [
         (
             f"a flight t1 after one of length t from sigma has p(sigma + t, t1) = r q(sigma, t) + ..., q = {landing}, "
@@ -164,7 +165,8 @@ def shortening(j: int, side: int) -> list[Part]:
         (
             f"p(sigma + t, rho t) - rho q = {sympy.factor(again)} >= 0, and p = {launch} grows with t, so t1 <= rho "
             "t for r < rho < 1",
-            all(value > 0 for value in terms.coeffs()) and all(value > 0 for value in growing.coeffs()),
+            positive_in(again.subs(corner, simultaneous=True), box | {rho: (0, 1)})
+            and positive_in(sympy.diff(launch, t).subs(corner), box),
         ),
     ]
 
@@ -172,8 +174,8 @@ def shortening(j: int, side: int) -> list[Part]:
 def after(j: int) -> tuple[str, Part]:
     """(what happens to launches at sigma >= 0 next to tau_*, why): contact is lost, or chatter completes."""
     launch = ratios.forms(j).launch
-    values = sympy.Poly(sympy.expand(launch / t), sigma, t).coeffs()
-    if all(value < 0 for value in values):
+    behind = {sigma: (0, sympy.oo), t: (0, sympy.oo)}
+    if negative_in(launch, behind):
         return "lost", (
             f"from sigma >= 0 v_c = b ({launch}) + ... < 0 for t > 0: no impact follows, contact is lost",
             True,
@@ -181,7 +183,7 @@ def after(j: int) -> tuple[str, Part]:
     shorter = shortening(j, 1)
     return "chatter", (
         f"from sigma >= 0 {shorter[1][0]}: the flights sum up, chatter completes behind tau_*, where a < 0",
-        all(value > 0 for value in values) and all(holds for _, holds in shorter),
+        positive_in(launch, behind) and all(holds for _, holds in shorter),
     )
 
 
@@ -204,13 +206,13 @@ def monotone() -> list[Part]:
         (
             f"from one velocity to a larger one at the same sigma: dt1/de has the sign of r ({landed_by_time}) - 3 "
             f"t1 >= r ({first.subs(u, sigma + t / 3).expand()}) >= 0 on 3 sigma + t >= 0",
-            all(value > 0 for value in sympy.Poly(first, u, t).coeffs()),
+            positive_in(first, {u: (0, sympy.oo), t: (0, sympy.oo)}),
         ),
         ("xi = 0 goes to xi' >= 0, since r q_e - p_e = 3 (r t - t_2) >= 0", is_zero(at_zero)),
         (
             f"d xi'/d xi <= r/(1 + xi)^2, since p_t - (q_t - q_e) = {slope} >= 0: so xi >= -b goes to xi' >= -b "
             "r/(1-b)^2 > -b",
-            all(value > 0 for value in sympy.Poly(slope, sigma, t, t_2).coeffs()),
+            positive_in(slope, dict.fromkeys((sigma, t, t_2), (0, sympy.oo))),
         ),
     ]
 

@@ -152,7 +152,7 @@ def _h(stated: tuple[Any, Any, Any]) -> Check:
             ("psi o p(h) = psi o q to second order", all(is_zero(component) for component in closes)),
             (
                 "from the visible point sigma = -1, eta = -11/10 at r = 1/2 it lands on the visible part eta' < 0, sigma' < 0",
-                launched,
+                launched and is_zero(new_eta**2 - fold.h()[1] ** 2),
             ),
             *first_component(new_sigma, order),
         ],
@@ -270,12 +270,12 @@ def _converse(stated: Callable[[Any], Any]) -> Check:
     failing = [
         name
         for name, (low, high) in places.items()
-        if stated((low + high) / 2) and negative_on(m * (m - HALF), m, low, high)
+        if stated((low + high) / 2) and not positive_on(m * (m - HALF), m, low, high)
     ]
     missing = [
         name
         for name, (low, high) in places.items()
-        if not stated((low + high) / 2) and positive_on(m * (m - HALF), m, low, high)
+        if not stated((low + high) / 2) and not negative_on(m * (m - HALF), m, low, high)
     ]
     return every(
         [

@@ -7,16 +7,10 @@ import sympy
 
 from singimpact.algebra.certificates import negative_on, positive_on, value_at
 from singimpact.paper.claims.claim import Check, Encoding, Statement
+from singimpact.paper.claims.sections.section3 import is_eigenvector
 from singimpact.paper.claims.sections.section4_trials import TRIALS as TRIALS
-from singimpact.paper.claims.sections.section4a_blowup import (
-    CUBIC,
-    HALF,
-    ROOT_SIGNS,
-    THREE_HALVES,
-    Q,
-    sign_chain,
-)
-from singimpact.paper.claims.verifiers import every, identity, is_zero, same
+from singimpact.paper.claims.sections.section4a_blowup import CUBIC, HALF, ROOT_SIGNS, THREE_HALVES, Q, sign_chain
+from singimpact.paper.claims.verifiers import agree, every, identity, is_zero
 from singimpact.paper.routes import fold
 from singimpact.paper.routes.fold import m
 from singimpact.paper.routes.implicit import r, sigma, t
@@ -87,20 +81,20 @@ def _m2_sign(stated: int) -> Check:
     ray = _ray(sympy.Integer(0), HALF)["v"]
     root = sympy.Poly(fold.fixed_point_factors()[1].subs(r, HALF), m).nroots(n=8)[1]
     before = fold.gamma_leading().subs({m: root, fold.k: 1})
-    after = _q_velocity(root)
+    after = sympy.N(_q_velocity(root) / 2, 20)
     return every(
         [
             ("p and q map the line onto one parabola", _same_parabola()),
-            ("on which v > 0 for k > 0, before and after", ray == stated),
+            ("on which v > 0 for k > 0, before and after", ray == stated and positive_on(_q_velocity(m), m, 0, HALF)),
         ],
         witness=lambda: {"r": "1/2", "k": "1", "m2": str(root), "v before": str(before), "v after": str(after)},
     )
 
 
 def _q_velocity(root: sympy.Expr) -> Any:
-    """v on q's image of (sigma, eta) = (1, root) at r = 1/2, k = 1."""
+    """v over k r on q's image of (sigma, eta) = (1, root)."""
     _, second = fold.phi()
-    return sympy.N((-r * second).subs({sigma: 1, t: root - THREE_HALVES, fold.k: 1, r: HALF}), 20)
+    return sympy.expand(-second.subs({sigma: 1, t: root - THREE_HALVES}) / fold.k)
 
 
 def ray_m3(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
@@ -133,30 +127,28 @@ _FORM1 = (HALF / (m - HALF) * (r * (4 * m - 3) + sympy.Rational(9, 2) * (m - HAL
 _FORM2 = r * (2 * m + 3) / (2 * m - 1) ** 2 / sympy.sqrt(Q)
 
 
-def _N_r(stated: sympy.Expr) -> Check:
-    return identity(fold.N_r, "derived by differentiating m'")(stated.subs(Q, fold.Q_at_one()))
+def _N_r(stated: sympy.Expr, derived: Callable[[], sympy.Expr] = fold.N_r) -> Check:
+    return identity(derived, "derived by differentiating m'")(stated.subs(Q, fold.Q_at_one()))
 
 
 def _N_r_form(stated: tuple[sympy.Expr, str]) -> Check:
     """N_r at the solutions of e:fixm: on the cubic with m (m - 1/2) > 0, and in "all" of them, m2 and 3/2 too."""
     formula, where = stated
     check = identity(fold.N_r_at_fixed_points, "derived on the cubic with m (m - 1/2) > 0")(formula)
-    trivial = fold.N_r_collected().subs(m, THREE_HALVES)
-    covers = where == "m1, m3" or is_zero(trivial - formula.subs(m, THREE_HALVES))
+    trivial = fold.in_root(fold.N_r_collected())
+    is_r = agree(trivial, {m: THREE_HALVES, fold.w: THREE_HALVES}, r) and agree(
+        fold.Q_at_one(), {m: THREE_HALVES}, sympy.Rational(9, 4)
+    )
+    covers = where == "m1, m3" or formula.subs(m, THREE_HALVES) == r
     return every(
         [
             check,
             (
                 "at m = 3/2 N_r is r, the formula gives 1" if where == "all" else "m1 and m3 have m (m - 1/2) > 0",
-                covers and sign_chain(CUBIC - 2 * r * m, ROOT_SIGNS),
+                is_r and covers and sign_chain(CUBIC - 2 * r * m, ROOT_SIGNS),
             ),
         ],
-        witness=lambda: {
-            "r": "1/2",
-            "m": "3/2",
-            "N_r": str(trivial.subs(r, HALF)),
-            "formula": str(formula.subs(m, THREE_HALVES)),
-        },
+        witness=lambda: {"r": "1/2", "m": "3/2", "N_r": "1/2", "formula": str(formula.subs(m, THREE_HALVES))},
     )
 
 
@@ -188,9 +180,8 @@ def _saddle(stated: tuple[sympy.Expr, sympy.Expr, sympy.Expr, sympy.Expr]) -> Ch
 
 def _direction(stated: tuple[int, int]) -> Check:
     """The eigenvector of Dh'(0, m3) for mu, whatever * is."""
-    matrix, vector = fold.Dh_blown_up(), sympy.Matrix(stated)
-    pairs = zip(matrix * vector, matrix[1, 1] * vector, strict=True)
-    return every([("Dh' v = mu v for the direction stated, for any *", all(same(x, y) for x, y in pairs))])
+    matrix = sympy.Matrix([list(fold.Dh_blown_up().row(0)), sympy.symbols("star mu")])
+    return every([("Dh' v = mu v for the direction stated, for any *", is_eigenvector(matrix, matrix[1, 1], stated))])
 
 
 def _tangent(stated: tuple[sympy.Expr, int]) -> Check:
@@ -220,7 +211,7 @@ MULTIPLIERS = {
     ),
     "s4-Nr-2": Encoding(
         _FORM2,
-        _N_r,
+        lambda stated: _N_r(stated, fold.N_r_collected),
         (r * (2 * m - 3) / (2 * m - 1) ** 2 / sympy.sqrt(Q), r * (2 * m + 3) / (2 * m - 1) / sympy.sqrt(Q)),
     ),
     "s4-Nr-1": Encoding(_FORM1, _N_r, (-_FORM1, _FORM1 + 2 * sympy.sqrt(Q) / (m - HALF) ** 2)),
@@ -234,9 +225,9 @@ MULTIPLIERS = {
         ),
     ),
     "s4-Nr-3": Encoding(
-        (_ON_FORM3, "m1, m3"),
-        _N_r_form,
-        ((_ON_FORM3 / 2, "m1, m3"), ((2 * m - 3) ** 2 / (8 * m**2 * (2 * m - 1)), "m1, m3")),
+        _ON_FORM3,
+        identity(fold.N_r_at_fixed_points, "derived on the cubic with m (m - 1/2) > 0"),
+        (_ON_FORM3 / 2, (2 * m - 3) ** 2 / (8 * m**2 * (2 * m - 1))),
     ),
     "s4-saddle-m3": Encoding(
         (sympy.Integer(0), sympy.zoo, sympy.Integer(1), sympy.Integer(1)),

@@ -195,7 +195,7 @@ def _crossed(stated: int) -> Check:
             (
                 f"per length of the arc the end of chatter changes by {text}: no stable manifold touches it",
                 all(rate * stated > 0 for rates in feet.values() for rate in rates),
-            ),
+            )
         ],
         kind="supported",
     )
@@ -319,10 +319,7 @@ def _shadow_velocity(sign: int) -> Check:
                 and negative_on(sympy.cancel(speed / model.shadow() / (model.shadow() - t) ** 2), kappa, -sympy.oo, 0),
             ),
         ],
-        [
-            ("d/du of (x - c)/(u (u - t_0)^2)", sympy.diff(cofactor, u)),
-            ("v_ttt v_(sigma t) at D", cusp[2] * cusp[3]),
-        ],
+        [("d/du of (x - c)/(u (u - t_0)^2)", sympy.diff(cofactor, u)), ("v_ttt v_(sigma t) at D", cusp[2] * cusp[3])],
     )
 
 
