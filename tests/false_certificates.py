@@ -35,11 +35,6 @@ def chain(polynomial, places, roots, everything):
             "roots": roots, "all": everything}  # fmt: skip
 
 
-def count(rows, steps, low, high, roots, first="2"):
-    return {"kind": "count", "variables": ["x"], "chain": rows, "first": first, "steps": steps, "low": low,
-            "high": high, "roots": roots}  # fmt: skip
-
-
 def value(numerator, denominator, at, stated):
     return {"kind": "value", "variables": ["x"], "numerator": numerator, "denominator": denominator, "index": 0,
             "at": at, "value": stated}  # fmt: skip
@@ -56,8 +51,6 @@ def identity(left, right, relation=None, variables=("w",)):
 # w^2 = 2
 ROOT_OF_TWO = [[[2], 1], [[0], -2]]
 OF_DEGREE_3 = poly(-2, -2, 1, 1)  # (w + 1)(w^2 - 2)
-SQUARE_LESS_ONE = [["-1", "0", "1"], ["0", "1"], ["1"]]  # x^2 - 1, its Sturm chain
-STEPS = [[["0", "1"], "1"], [["0", "1"], "1"]]
 
 # name -> (the condition in the source, what stands there without it, a certificate that it must refuse)
 WEAKENED = {
@@ -90,39 +83,6 @@ WEAKENED = {
     "a sign unproved": (
         "need(expands(letters, 1, value, data[\"box\"], point), ", "need(True, ",
         chain(poly(1, 0, 1), [place("0", -1), place("1", 1)], [["0", "1"]], False)),
-    "a derivative turned round": (
-        "number(data[\"first\"]) > 0 and ", "",
-        count([["-1", "0", "1"], ["0", "-1"], ["1"]], [[["0", "-1"], "1"], [["0", "-1"], "1"]], "-2", "2", -2, "-2")),
-    "another derivative": (
-        " and parts[0].derivative(0) == parts[1] * number(data[\"first\"]), ", ", ",
-        count([["-1", "0", "1"], ["1"]], [[["-1", "0", "1"], "1"]], "-2", "2", 0)),
-    "a step turned round": (
-        "need(number(scale) > 0 and (not last", "need((not last",
-        count([["1", "0", "1"], ["0", "1"], ["1"]], [[["0", "1"], "-1"], [["0", "1"], "1"]], "-2", "2", 2)),
-    "a step that is wrong": (
-        "need(parts[n] == row(quotient) * parts[n + 1] - rest * number(scale), ", "need(True, ",
-        count([["1", "0", "1"], ["0", "1"], ["1"]], STEPS, "-2", "2", 2)),
-    "a last step of another scale": (
-        " and (not last or number(scale) == 1), ", ", ",
-        count(SQUARE_LESS_ONE, [[["0", "1"], "1"], [["0", "1"], "7"]], "-2", "2", 2)),
-    "a chain cut short": (
-        "need(len(data[\"steps\"]) == len(parts) - 1 and ", "need(",
-        count([["1", "0", "1"], ["0", "1"], ["1"]], [], "-2", "2", 2)),
-    "a multiple root": (
-        " and parts[-1].is_constant()", "",
-        count([["-3", "7", "-5", "1"], ["7", "-10", "3"], ["-1", "1"]],
-              [[["-5/9", "1/3"], "8/9"], [["-7", "3"], "1"]], "1", "4", 0, "1")),
-    "the polynomial 0": (" and parts[-1] != 0, ", ", ", count([[], []], [[[], "1"]], "-2", "oo", 0)),
-    "ends out of order": (
-        "need(place_of(data[\"low\"]) < place_of(data[\"high\"]), ", "need(True, ",
-        count(SQUARE_LESS_ONE, STEPS, "2", "-2", -2)),
-    "a root at the end": (
-        "changes(data[\"high\"]) - at_end", "changes(data[\"high\"])", count(SQUARE_LESS_ONE, STEPS, "-2", "1", 2)),
-    "another count": (
-        " and roots == data[\"roots\"], ", ", ", count(SQUARE_LESS_ONE, STEPS, "-2", "2", 5)),
-    "a count in two variables": (
-        "need(len(letters.names) == 1, ", "need(True, ",
-        count(SQUARE_LESS_ONE, STEPS, "-2", "2", 0) | {"variables": ["x", "y"]}),
     "degrees at infinity, falling": (
         "letters.constant(0) if more < 0 else over", "over", value(const(1), poly(0, 1), "oo", [const(1), const(1)])),
     "degrees at infinity, rising": (

@@ -8,7 +8,7 @@ from singimpact.handed_on import names_of
 _FILES = {
     "balls": "Balls Zero as_rational ball_of",
     "certificates": (
-        "collected definite identical left_behind negative_on positive_in positive_on roots_inside sign_chain value_at"
+        "collected definite identical left_behind negative_on positive_in positive_on sign_chain value_at"
     ),
     "certified": "Certified from_ends",
     "derivations": "At substitution",

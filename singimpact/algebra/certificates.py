@@ -163,41 +163,6 @@ def _roots(poly: Any, low: Any, high: Any) -> int:
     return int(total) - sum(1 for end in ends if end.is_finite and poly.eval(end) == 0)
 
 
-def roots_inside(expression: Any, variable: Any, low: Any, high: Any) -> int:
-    """The number of real roots in the open interval, proved by a Sturm chain.
-
-    Examples
-    --------
-    >>> x = sympy.Symbol("x")
-    >>> roots_inside(x**3 - x, x, -1, 1), roots_inside(x**3 - x, x, -1, sympy.oo)
-    (1, 2)
-    """
-    poly = sympy.Poly(_quotient(expression)[0], variable, domain="QQ").primitive()[1]
-    count = _roots(poly, low, high)
-    chain, steps = [poly, poly.diff().primitive()[1]], []
-    while True:
-        quotient, rest = divmod(chain[-2], chain[-1])
-        scale = sympy.Rational(1) if rest.is_zero else rest.primitive()[0]
-        steps.append([[str(value) for value in reversed(quotient.all_coeffs())], str(scale)])
-        if rest.is_zero:
-            break
-        chain.append(-rest.primitive()[1])
-    if chain[-1].degree() > 0:
-        raise ArithmeticError(f"a Sturm chain proves nothing of {poly.as_expr()}: it has a multiple root")
-    data = {
-        "kind": "count",
-        "variables": [str(variable)],
-        "chain": [[str(value) for value in reversed(member.all_coeffs())] for member in chain],
-        "first": str(poly.diff().primitive()[0]),
-        "steps": steps,
-        "low": str(low),
-        "high": str(high),
-        "roots": count,
-    }
-    left_behind(data)
-    return count
-
-
 def sign_chain(expression: Any, variable: Any, signs: Sequence[tuple[Any, int]], box: Box) -> bool:
     """Proved: at each place of the variable, which may be infinite, the polynomial has the sign stated for all parameters.
 

@@ -16,7 +16,7 @@ _FILES = {
     "checker.motion": "Flight Model defect read taylor",
     "checker.nonlinear": "Flights Growing",
     "checker.periodic_orbit": "Orbits impact",
-    "claims_proofs": "check_certificate",
+    "claims_proofs": "check_certificate number",
     "claims_checker": "Refused STATED STRONGEST_FIRST check_words statement_of",
 }
 __getattr__ = names_of(__name__, _FILES)

@@ -4,7 +4,6 @@ A polynomial is a list of [exponents, coefficient], a coefficient a whole number
 
     positive   sign * numerator/denominator > 0 on an open box: the product is a sum of positive terms
     chain      signs of a polynomial at places of its first variable, for all values of the others in a box
-    count      the number of real roots in an open interval, by Sturm's theorem
     value      the limit of a quotient where one variable tends to a place
     definite   a quadratic form that has one sign off the origin
     identity   two different quotients are equal, or are where a quadratic relation holds
@@ -232,36 +231,6 @@ def chain(data: Any, letters: Letters) -> str:
     return f"{letters.text(poly)} has a root {letters.names[0]} in each of {brackets}{others}{rest}"
 
 
-def count(data: Any, letters: Letters) -> str:
-    need(len(letters.names) == 1, "roots are counted of a polynomial in one variable")
-    x = letters.variables[0]
-
-    def row(values: Any) -> Any:
-        return sum((number(value) * x**n for n, value in enumerate(values)), letters.constant(0))
-
-    parts = [row(values) for values in data["chain"]]
-    # p, p' and the negative remainders, each up to a factor > 0; a constant at the end: no root of p is multiple
-    need(number(data["first"]) > 0 and parts[0].derivative(0) == parts[1] * number(data["first"]), "no derivative")
-    need(len(data["steps"]) == len(parts) - 1 and parts[-1].is_constant() and parts[-1] != 0, "the chain is cut short")
-    for n, (quotient, scale) in enumerate(data["steps"]):
-        last = n + 2 == len(parts)
-        need(number(scale) > 0 and (not last or number(scale) == 1), "a step of another scale")
-        rest = letters.constant(0) if last else parts[n + 2]
-        need(parts[n] == row(quotient) * parts[n + 1] - rest * number(scale), "a step that is wrong")
-    need(place_of(data["low"]) < place_of(data["high"]), "the ends are not in order")
-
-    def changes(at: str) -> int:
-        values = [sign_part(letters, part, 0, at).to_dict().get((0,), fmpq(0)) for part in parts]
-        signs = [value > 0 for value in values if value != 0]
-        return sum(one != two for one, two in pairwise(signs))
-
-    # Sturm's theorem counts the roots in (low, high]
-    at_end = data["high"] not in ENDS and letters.at(parts[0], 0, number(data["high"])) == 0
-    roots = changes(data["low"]) - changes(data["high"]) - at_end
-    need(type(data["roots"]) is int and roots == data["roots"], f"there are {roots} roots")
-    return f"{letters.text(parts[0])} has {roots} real roots in ({data['low']}, {data['high']})"
-
-
 def value(data: Any, letters: Letters) -> str:
     index, at = data["index"], data["at"]
     need(type(index) is int and 0 <= index < len(letters.names), "no such variable")
@@ -487,7 +456,6 @@ EVERY, ORDERED = {"kind", "variables"}, {"weights", "order"}
 KINDS = {
     "positive": (positive, {"numerator", "denominator", "sign", "box", "degree", "raised", "expansion"}),
     "chain": (chain, {"polynomial", "places", "box", "roots", "all"}),
-    "count": (count, {"chain", "first", "steps", "low", "high", "roots"}),
     "value": (value, {"index", "at", "numerator", "denominator", "value"}),
     "definite": (definite, {"form", "sign"}),
     "identity": (identity, {"left", "right", "relation"}),

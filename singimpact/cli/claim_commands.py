@@ -40,6 +40,7 @@ A picture of an oscillator: singimpact orbit {LINEAR} --tau 0.3 --v 0.4 -o orbit
 @click.option("--beyond", is_flag=True, help="The claims that are not in the paper, and those they rest on.")
 @click.option("--all", "whole", is_flag=True, help="One line a claim, and of each misprint its witness.")
 @click.option("--certificates", metavar="DIR", help="Write one JSON file a claim, with what its proof rests on.")
+@click.option("--coq", metavar="DIR", help="Write one Coq file a claim, with a theorem for each certificate.")
 @output_options
 @click.pass_context
 def verify_command(
@@ -48,6 +49,7 @@ def verify_command(
     beyond: bool,
     whole: bool,
     certificates: str | None,
+    coq: str | None,
     as_json: bool,
     output: str | None,
 ) -> None:
@@ -55,13 +57,16 @@ def verify_command(
 
     Of all claims it prints the counts and the misprints on one screen; `-o verify.html` writes the whole list with its
     formulas set, any other file the lines of --all. The exit code is 1 if a claim ends in `error`. The files of
-    --certificates are checked by a second program, singimpact/certificates/claims_checker.py.
+    --certificates are checked by a second program, singimpact/certificates/claims_checker.py, those of
+    --coq by Coq (8.16 or newer), in the order of _CoqProject: coqc -Q . Claims FILE.
     """
     from singimpact.paper.claims.verdicts import verify
 
     verdicts = verify(ids or None, beyond=beyond)
     if certificates is not None:
         verdicts.save_certificates(certificates)
+    if coq is not None:
+        verdicts.save_coq(coq)
     # without a terminal lines are as long as they are, and have no colours
     width = shutil.get_terminal_size().columns if output is None and sys.stdout.isatty() else None
     if as_json:

@@ -1,4 +1,4 @@
-"""`Contact`: the jets of an oscillator at a point of the tau-axis, with the zeros of its contact order set first."""
+"""`Contact`: the jets of an oscillator at a point of the tau-axis, zeros of its contact order first; rho at rest."""
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
@@ -8,11 +8,15 @@ from typing import Any
 
 from singimpact.algebra.expressions import Expression, evaluate, number, substitute, subtract
 from singimpact.algebra.jets import JetSpace
+from singimpact.algebra.numbers import sign_of
+from singimpact.algebra.puiseux import NoExpansion, Puiseux, expansion
 from singimpact.algebra.rings import SymbolRing
+from singimpact.algebra.taylor import NotSmooth
 from singimpact.algebra.univariate import precision_of
 from singimpact.inputs import InputError, refuse
-from singimpact.oscillator.model import Oscillator, require_smooth_text
+from singimpact.oscillator.model import Oscillator, not_smooth, require_smooth_rho, require_smooth_text
 
+TASK = "a power series"
 NAMED_ORDERS = {"generic": 0, "regular": 0, "tangency": 1, "swan": 2}
 
 
@@ -159,3 +163,39 @@ def _moving_force_jet(oscillator: Oscillator, j: int, order: int, ring: Any, tau
     state = {"x": space.constant(place) + X, "xdot": V, "t": space.constant(start) + u}
     terms = space.evaluate(oscillator.force(), state).terms
     return {(i, k, m) if m else (i, k): value for (i, k, m), value in terms.items() if i + k}
+
+
+def series_of_rho(osc: Oscillator, order: int, ring: Any) -> dict[int, Any]:
+    """k -> coefficient of v^k in rho, for 1 <= k <= order, those that are not 0.
+
+    Raises
+    ------
+    InputError : rho has powers of v that are not whole.
+    ArithmeticError : a coefficient is not in the ring.
+
+    Examples
+    --------
+    >>> from singimpact.algebra.rings import EXACT
+    >>> series_of_rho(Oscillator("x", "cos(t)", 0, "-v*cos(sqrt(-v))"), 3, EXACT)
+    {1: Fraction(-1, 1), 2: Fraction(-1, 2), 3: Fraction(-1, 24)}
+    """
+    require_smooth_rho(osc, TASK)
+    space = JetSpace(("v",), order, ring)
+    try:
+        jet = space.evaluate(osc.rho(), {"v": space.generators()[0]})
+        return {k: value for k in range(1, order + 1) if (value := jet.coefficient((k,))) != 0}
+    except NotSmooth:  # a part of the formula is not smooth, although rho is: |v|, or cos(sqrt(-v))
+        terms = {int(e): c for e, c in _rho_up_to(osc, order).terms if e <= order and sign_of(c)}
+        return {k: (-1) ** k * evaluate(value, {}, ring) for k, value in terms.items()}
+
+
+def _rho_up_to(osc: Oscillator, order: int) -> Puiseux:
+    """rho(-w) up to w^order; parts of the formula have roots of w, so more terms of them are needed."""
+    for more in (1, 2, 4):
+        try:
+            found = expansion(osc.rho(), "v", -1, more * (order + 2))
+        except NoExpansion:
+            break
+        if found.whole and (found.bound is None or found.bound > order):
+            return found
+    raise not_smooth(osc, TASK)

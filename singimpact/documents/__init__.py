@@ -1,4 +1,4 @@
-"""Any formula, series or table as LaTeX, PDF, Markdown or HTML.
+"""Any formula, series or table as LaTeX, PDF, Markdown or HTML; certificates as files for Coq.
 
 Not here: pictures (`scenes`), the mathematics that is shown (`theory`), the words about the paper (`paper.sections`).
 """
@@ -6,6 +6,7 @@ Not here: pictures (`scenes`), the mathematics that is shown (`theory`), the wor
 from singimpact.handed_on import names_of
 
 _FILES = {
+    "coq_files": "KINDS LEMMAS Writer coq_file",
     "document_steps": "CompileError Mark Section Step claims_of compiled equations_of",
     "rendering": "PAGE as_data as_files as_latex as_markdown as_text latex_text lines_of width",
 }

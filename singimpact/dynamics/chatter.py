@@ -14,7 +14,7 @@ from singimpact.algebra.expressions import Expression, names_in
 from singimpact.algebra.numbers import EPSILON, as_float, as_mpf, compare
 from singimpact.algebra.precision import bits_at, digits_at, for_user
 from singimpact.algebra.rings import Multiprecision
-from singimpact.contact.contact import Contact
+from singimpact.contact.contact import Contact, series_of_rho
 from singimpact.dynamics import enclosed
 from singimpact.dynamics.remaining import chatter_completes, remaining, stays_below
 from singimpact.flights.blocks import gathered
@@ -28,7 +28,6 @@ from singimpact.flights.states import States
 from singimpact.flights.walls import at_walls
 from singimpact.inputs import whole
 from singimpact.oscillator.model import Oscillator, require_smooth_rho
-from singimpact.oscillator.rho_series import series_of_rho
 from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.result import Result, in_words
 from singimpact.status import Cause, Status, status_array

@@ -9,7 +9,6 @@ _FILES = {
     "linear": "linear_form",
     "moving_number": "value_of with_number",
     "model": "FIELDS Oscillator fields_of read_fields",
-    "rho_series": "series_of_rho",
     "wall_acceleration": "acceleration",
 }
 __getattr__ = names_of(__name__, _FILES)

@@ -17,13 +17,20 @@ from singimpact.algebra.precision import balls_at, kept_property
 from singimpact.algebra.rings import DOUBLES, EXACT, SYMBOLIC, Doubles, SymbolRing, to_sympy
 from singimpact.algebra.solving import newton_in_balls
 from singimpact.algebra.univariate import precision_of
-from singimpact.contact.contact import NAMED_ORDERS, Contact, acceleration_jet, derivative_name, force_jet
+from singimpact.contact.contact import (
+    NAMED_ORDERS,
+    TASK,
+    Contact,
+    acceleration_jet,
+    derivative_name,
+    force_jet,
+    series_of_rho,
+)
 from singimpact.contact.points import TangencyPoint, tangency_points
 from singimpact.contact.zero_ahead import ContactZero
 from singimpact.handed_on import flint, sympy
 from singimpact.inputs import InputError, need, refuse, require, require_known
 from singimpact.oscillator.model import Oscillator, require_smooth_rho
-from singimpact.oscillator.rho_series import TASK, series_of_rho
 
 NEAR = 1e-7  # a tau given as a double names the tangency point this close to it, in units of 1 + |tau|
 LEAST = Fraction(1, 2**4096)  # halving for a multiplier ends here

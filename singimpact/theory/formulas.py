@@ -15,11 +15,10 @@ from singimpact.algebra.horner import Horner
 from singimpact.algebra.jets import Jet
 from singimpact.algebra.rings import DOUBLES, EXACT
 from singimpact.algebra.univariate import precision_of
-from singimpact.contact.contact import Contact, contact_order, derivative_name
+from singimpact.contact.contact import TASK, Contact, contact_order, derivative_name
 from singimpact.handed_on import sympy
 from singimpact.inputs import InputError, checked_keywords, refuse, require, whole
 from singimpact.oscillator.model import require_smooth_rho
-from singimpact.oscillator.rho_series import TASK
 from singimpact.theory.completion import by_velocity, rho_names, symbolic_completion, symbolic_curve
 from singimpact.theory.contact_points import LetteredModel, Place, ending_gamma, exact_contact, multiplier, place
 from singimpact.theory.gamma_series import InvariantCurve, invariant_curve

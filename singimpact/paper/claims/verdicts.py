@@ -1,6 +1,7 @@
 """The verdicts of a run: as a table for any width, as the list of misprints, and as data."""
 
 import json
+import re
 import sys
 import textwrap
 from collections import Counter
@@ -239,6 +240,42 @@ class VerdictTable(Sequence["Verdict"]):
         for path, verdict in zip(paths, self.verdicts, strict=True):
             write_text(path, json.dumps(contents[verdict.id], indent=1, ensure_ascii=False) + "\n")
         return paths
+
+    def save_coq(self, directory: str | Path) -> list[Path]:
+        """Write one file for Coq a claim into a folder, with a theorem a certificate, and a project file.
+
+        Parameters
+        ----------
+        directory : the folder, made if it is missing; of a file that is there already the content is replaced.
+
+        Returns
+        -------
+        list[Path] : the files in the order in which ``coqc -Q . Claims FILE`` compiles them there, with Coq 8.16 or
+            newer. A claim that has no certificate of its own has none.
+
+        Raises
+        ------
+        InputError : the folder cannot be written.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> import singimpact as si
+        >>> with tempfile.TemporaryDirectory() as place:
+        ...     [file.name for file in si.verify("e:acc").save_coq(place)]
+        ['certificates.v', 'claim_e_yeq.v', 'claim_e_acc.v']
+        """
+        from singimpact.documents.coq_files import LEMMAS, coq_file
+
+        path, contents = folder(directory), self._contents()
+        texts = {LEMMAS.name: LEMMAS.read_text(encoding="utf-8")} | {
+            f"claim_{re.sub(r'[^0-9A-Za-z]', '_', name)}.v": coq_file(contents[name])
+            for name in (verdict.id for verdict in self.verdicts)
+            if contents[name]["certificates"]
+        }
+        for name, text in (texts | {"_CoqProject": "\n".join(["-Q . Claims", *texts, ""])}).items():
+            write_text(path / name, text)
+        return [path / name for name in texts]
 
     def _contents(self) -> dict[str, dict[str, Any]]:
         """The files by id: of the certificates its own, and of the claims that it rests on their files' digests."""

@@ -155,13 +155,10 @@ ONE, X, TWO_X = [[[0], 1]], [[[1], 1]], [[[1], 2]]
         {"kind": "composed", "variables": ["x"], "weights": [0], "order": None, "relation": None,
          "left": {"outer": [TWO_X, [[[0], 2]]], "images": [[0, [X, ONE]]]}, "right": {"outer": [X, ONE], "images": []},
          "says": "[(2*x)/(2) at x = x] = x"},
-        {"kind": "count", "variables": ["x", "y"], "chain": [[-1, 0, 1], [0, 1], [1]], "first": "2",
-         "steps": [[[0, 1], "1"], [[0, 1], "1"]], "low": "-2", "high": "2", "roots": 0,
-         "says": "x**2 - 1 has 0 real roots in (-2, 2)"},
     ],
 )  # fmt: skip
 def test_a_statement_that_says_nothing_is_refused(certificate):
-    with pytest.raises(claims_checker.Refused, match=r"X = X|one variable"):
+    with pytest.raises(claims_checker.Refused, match="X = X"):
         claims_checker.check_certificate(certificate)
 
 

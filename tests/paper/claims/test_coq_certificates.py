@@ -1,25 +1,21 @@
-"""Coq accepts the certificates of claims as `derivations/certificates/emit.py` writes them, and no forged ones."""
+"""Coq accepts the certificates of claims as `singimpact verify --coq DIR` writes them, and no forged ones."""
 
 import copy
-import importlib.util
 import json
+import random
+import re
 import shutil
 import subprocess
 import sys
-from pathlib import Path
+from fractions import Fraction
 
 import pytest
 
+from singimpact.certificates import Refused, check_certificate, number
+from singimpact.documents import KINDS, LEMMAS, Writer, coq_file
+from singimpact.paper import verify
+
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(shutil.which("coqc") is None, reason="needs coqc")]
-EMIT = Path(__file__).parents[3] / "derivations" / "certificates" / "emit.py"
-
-
-@pytest.fixture(scope="module")
-def emit():
-    spec = importlib.util.spec_from_file_location("emit", EMIT)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 def compiled(folder, name):
@@ -27,58 +23,59 @@ def compiled(folder, name):
 
 
 @pytest.fixture(scope="module")
-def certificates(tmp_path_factory):
-    """The folder that the command writes, and claim -> content of its file."""
-    folder = tmp_path_factory.mktemp("certificates")
-    command = [sys.executable, "-m", "singimpact", "verify", "--certificates", str(folder)]
-    subprocess.run(command, check=True, capture_output=True)
-    contents = [json.loads(path.read_text()) for path in sorted(folder.glob("*.json"))]
-    return folder, {content["id"]: content for content in contents}
-
-
-@pytest.fixture(scope="module")
-def lemmas(emit, tmp_path_factory):
+def written(tmp_path_factory):
+    """The folder that the commands write, of the paper's claims and of those beyond it."""
     folder = tmp_path_factory.mktemp("coq")
-    shutil.copy(emit.LEMMAS, folder)
-    done = compiled(folder, emit.LEMMAS.name)
-    assert done.returncode == 0, done.stderr
+    for words in ([], ["--beyond"]):
+        command = [sys.executable, "-m", "singimpact", "verify", *words, "--coq", str(folder / "".join(words))]
+        subprocess.run(command, check=True, capture_output=True)
+    for path in (folder / "--beyond").iterdir():
+        if not (folder / path.name).exists():
+            path.rename(folder / path.name)
+    assert compiled(folder, LEMMAS.name).returncode == 0
     return folder
 
 
-def test_a_folder_of_certificates_becomes_a_project(emit, certificates, tmp_path, capsys):
-    folder, contents = certificates
-    names = emit.emitted(folder, tmp_path)
-    assert names[0] == "certificates.v"
-    assert (tmp_path / "_CoqProject").read_text().splitlines() == ["-Q . Claims", *names]
-    texts = [(tmp_path / name).read_text() for name in names[1:]]
-    certificates_ = [data for content in contents.values() for data in content["certificates"]]
-    left_out = [data["says"] for data in certificates_ if data["kind"] not in emit.KINDS]
-    assert {data["kind"] for data in certificates_} == {*emit.KINDS, "count"}
-    assert len(left_out) == 1
-    assert left_out[0] in capsys.readouterr().out
-    assert sum(text.count("Qed.") for text in texts) == len(certificates_) - 1
+@pytest.fixture(scope="module")
+def certificates(tmp_path_factory):
+    """All of them, of the paper's claims."""
+    folder = tmp_path_factory.mktemp("certificates")
+    paths = verify().save_certificates(folder)
+    return [data for path in paths for data in json.loads(path.read_text())["certificates"]]
+
+
+def test_a_folder_becomes_a_project(written, certificates):
+    names = (written / "_CoqProject").read_text().splitlines()
+    assert names[:2] == ["-Q . Claims", "certificates.v"]
+    assert {data["kind"] for data in certificates} == set(KINDS)
+    texts = [(written / name).read_text() for name in names[2:]]
+    assert len(texts) >= 139
+    assert sum(text.count("Qed.") for text in texts) == len(certificates)
+
+
+def heads_and_modules(written):
+    """What the files begin with, and the file of each claim without it, the longest first."""
+    heads, modules = set(), []
+    for path in sorted(written.glob("claim_*.v"), key=lambda path: -path.stat().st_size):
+        head, rest = re.fullmatch(r"(?:\(\*.*?\*\)\n)\n(From Coq.*?\]\)\.\n)(.*)", path.read_text(), re.DOTALL).groups()
+        heads.add(head)
+        modules.append((path.stem, rest))
+    assert len(heads) == 1
+    return heads.pop(), modules
 
 
 @pytest.mark.parametrize("half", [0, 1])
-def test_coq_accepts_all_of_them(half, emit, certificates, lemmas):
+def test_coq_accepts_all_of_them(half, written):
     """As modules of one file, since loading the reals takes longer than most proofs."""
-    _, contents = certificates
-    modules = [
-        emit.claim_file(content).replace(emit.HEAD, "") for content in contents.values() if content["certificates"]
-    ]
-    assert len(modules) == 114
-    chosen = list(enumerate(modules))[half::2]
-    text = "\n".join([emit.HEAD, *(f"Module C{n}.\n{module}\nEnd C{n}." for n, module in chosen)])
-    printed = "".join(f"Print Assumptions C{n}.certificate_0.\n" for n, _ in chosen[:10])
-    (lemmas / f"half{half}.v").write_text(f"{text}\n{printed}")
-    done = compiled(lemmas, f"half{half}.v")
+    head, modules = heads_and_modules(written)
+    assert len(modules) >= 170
+    chosen = modules[half::2]
+    text = "\n".join([head, *(f"Module {name}.\n{module}\nEnd {name}." for name, module in chosen)])
+    printed = "".join(f"Print Assumptions {name}.certificate_0.\n" for name, _ in chosen[-10:])
+    (written / f"half{half}.v").write_text(f"{text}\n{printed}")
+    done = compiled(written, f"half{half}.v")
     assert done.returncode == 0, done.stderr
     assert "certificate" not in done.stdout.partition("Axioms:")[2]
-
-
-def add_one(polynomial):
-    """A polynomial with another constant term, or with one where it had none."""
-    return [term for term in polynomial if any(term[0])] + [[[0] * len(polynomial[0][0]), "8/7"]]
 
 
 def twice(polynomial):
@@ -93,12 +90,20 @@ def right_side(data):
     data["right"]["outer"][0] = twice(data["right"]["outer"][0]) or [[[0] * len(data["variables"]), 1]]
 
 
+def wider(data):
+    """On a box that reaches beyond where the sign was proved."""
+    (low, high), *rest = data["box"]
+    data["box"] = [[low if low == "-oo" else f"{low}" if "/" in low else str(int(low) - 900), high], *rest]
+
+
 FORGED = {
     "positive": flip,
     "definite": flip,
     "identity": lambda data: data["left"].__setitem__(0, twice(data["left"][0])),
     "composed": right_side,
-    "value": lambda data: data.update(value=[add_one(data["numerator"]), [[[0] * len(data["variables"]), 1]]]),
+    "value": lambda data: data.update(
+        value=[[[[0] * len(data["variables"]), "8/7"]], [[[0] * len(data["variables"]), 1]]]
+    ),
     "chain": lambda data: data.update(polynomial=twice(data["polynomial"][:1]) + data["polynomial"][1:]),
     "motion": lambda data: data.update(height=twice(data["height"])),
     "flight": lambda data: data.update(rise=twice(data["rise"])),
@@ -116,20 +121,63 @@ def shape(data):
     return f"composed, {data['order'] is None}, {data['relation'] is None}, {polynomial}"
 
 
-def test_forged_ones_are_refused(emit, certificates, lemmas):
-    """One of each shape: what passes unchanged, above, fails with another number or sign."""
-    _, contents = certificates
-    first = {}
-    for content in contents.values():
-        for data in content["certificates"]:
-            if data["kind"] in FORGED:
-                first.setdefault(shape(data), (content, data))
-    assert len(first) == len(FORGED) + 6  # seven shapes of compositions
-    for n, (name, (content, data)) in enumerate(first.items()):
-        forged = copy.deepcopy(data)
-        FORGED[data["kind"]](forged)
-        assert forged != data
-        (lemmas / f"forged{n}.v").write_text(emit.claim_file(content | {"certificates": [forged]}))
-        done = compiled(lemmas, f"forged{n}.v")
-        assert done.returncode != 0, name
-        assert "Syntax error" not in done.stderr, name
+def is_false(data):
+    """Whether the statement of a forged certificate is wrong: the second program decides, or a point of the box."""
+    try:
+        check_certificate({name: part for name, part in data.items() if name != "says"})
+    except Refused:
+        if data["kind"] != "positive":
+            return True
+    else:
+        return False
+    rng, w = random.Random(1), Writer(data["variables"])
+    product = w.read(data["numerator"]) * w.read(data["denominator"])
+    for _ in range(40):
+        value = product
+        for index, (low, high) in enumerate(data["box"]):
+            ends = [-99 if low == "-oo" else Fraction(low), 99 if high == "oo" else Fraction(high)]
+            place = ends[0] + (ends[1] - ends[0]) * Fraction(rng.randint(1, 999), 1000)
+            value = w.at(value, index, number(str(place)))
+        if w.terms(value).get((0,) * len(w.names), 0) * data["sign"] <= 0:
+            return True
+    return False
+
+
+WAYS = {
+    "positive": [FORGED["positive"], wider],
+    "composed": [
+        FORGED["composed"],
+        lambda data: data["left"]["outer"].__setitem__(1, twice(data["left"]["outer"][1])),
+    ],
+}
+
+
+def theorem(name, data):
+    """A statement of one certificate with its proof, given up where the proof fails."""
+    found = coq_file({"id": "one", "title": "one", "certificates": [data]})
+    return found[found.index("Theorem") :].replace("certificate_0", name) + "Abort All.\n"
+
+
+def test_a_hundred_forged_ones_are_refused(written, certificates):
+    """Another number, sign, factor or interval, in each shape; the first of each passes unchanged in the same run."""
+    head, _ = heads_and_modules(written)
+    names, shapes, lines = [], {}, [head, "Set Default Timeout 20.\n"]
+    for data in sorted(certificates, key=lambda data: len(str(data))):
+        for way in WAYS.get(data["kind"], [FORGED[data["kind"]]]):
+            forged = copy.deepcopy(data)
+            way(forged)
+            known = shapes.setdefault((shape(data), way), [])
+            if len(known) < 7 and is_false(forged):
+                known.append(f"forged{len(names)}")
+                names.append(known[-1])
+                lines += [theorem(f"true{len(names)}", data)] if len(known) == 1 else []
+                lines += [theorem(names[-1], forged)]
+    assert len(names) >= 100
+    assert len({name for name, _ in shapes}) == len(FORGED) + 6  # seven shapes of compositions
+    kept = [f"true{n}" for n in range(1, len(names) + 1)]
+    lines += [f"Locate {name}.\n" for name in (*names, *kept)]
+    command = ["coqtop", "-q", "-Q", ".", "Claims"]
+    done = subprocess.run(command, input="".join(lines), cwd=written, capture_output=True, text=True, check=False)
+    assert not re.findall(r"Syntax error|The reference \w+ was not found", done.stdout + done.stderr)
+    assert done.stdout.count("No object of basename forged") == len(names)
+    assert len(re.findall(r"^(?:Coq < )*Constant Top\.true", done.stdout, re.MULTILINE)) == len(shapes)

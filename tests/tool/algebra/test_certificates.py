@@ -18,7 +18,6 @@ from singimpact.algebra import (
     negative_on,
     positive_in,
     positive_on,
-    roots_inside,
     sign_chain,
     substitution,
     value_at,
@@ -89,14 +88,6 @@ def test_each_change_of_a_number_is_rejected(name):
             assert not accepts(changed(certificate, path, bumped)), path
 
 
-def test_a_sturm_chain_is_rejected_when_changed():
-    (certificate,) = made(roots_inside, x**5 - 4 * x + 1, x, -2, 1)
-    assert certificate["roots"] == 2
-    for path in leaves(certificate):
-        if path[0] not in ("low", "high"):  # with another end the count may still be right
-            assert not accepts(changed(certificate, path, bumped)), path
-
-
 @pytest.mark.parametrize(
     ("expression", "low", "high"),
     [
@@ -120,8 +111,6 @@ def test_nearly_zero_inside_needs_a_higher_degree():
 def test_what_is_not_found_is_an_error_not_a_no():
     with pytest.raises(ArithmeticError, match="no certificate"):
         positive_on((x - HALF) ** 2 + sympy.Rational(1, 10**6), x, 0, 1)
-    with pytest.raises(ArithmeticError, match="multiple root"):
-        roots_inside((x - HALF) ** 2, x, 0, 1)
 
 
 @pytest.mark.parametrize(
@@ -158,15 +147,14 @@ def test_a_yes_is_right_and_a_no_too(coefficients):
         assert positive
 
 
-def test_the_first_three_false_certificates():
-    """1/x -> 1 at infinity; w/(w^2 - 2) = 2w/(w^2 - 2) where w^2 = 2; -2 roots in (2, -2)."""
+def test_the_first_false_certificates():
+    """1/x -> 1 at infinity; w/(w^2 - 2) = 2w/(w^2 - 2) where w^2 = 2."""
     over = [[[2], 1], [[0], -2]]
     for certificate in (
         false.value(false.const(1), false.poly(0, 1), "oo", [false.const(1), false.const(1)]),
         false.value(false.poly(0, 0, 1), false.poly(0, 1), "oo", [false.const(1), false.const(1)]),
         false.identity([false.poly(0, 1), over], [false.poly(0, 2), over],
                        [false.const(1), [[[3], -1], [[1], 2]], over]),
-        false.count(false.SQUARE_LESS_ONE, false.STEPS, "2", "-2", -2),
     ):  # fmt: skip
         assert not accepts(certificate)
 

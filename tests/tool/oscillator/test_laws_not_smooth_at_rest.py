@@ -7,8 +7,8 @@ import pytest
 
 import singimpact as si
 from singimpact.algebra import EXACT
+from singimpact.contact import series_of_rho
 from singimpact.inputs import InputError
-from singimpact.oscillator import series_of_rho
 
 SLOPES = {
     "-v*(1 - 0.3*(-v)**(1/5))": 1,
