@@ -287,7 +287,8 @@ def solution(data: Data, w: Writer, y: Polynomial, index: int, clock: str, scale
 def together(claims: Sequence[Theorem], w: Writer) -> Theorem:
     steps = "\n".join(f"  - {proof}" for _, proof in claims)
     statement = w.every([], " /\\ ".join(text for text, _ in claims))
-    return statement, f"intros; repeat match goal with |- _ /\\ _ => split end.\n{steps}"
+    all_of = "conj _ (" * (len(claims) - 1) + "_" + ")" * (len(claims) - 1)
+    return statement, f"intros; refine ({all_of}).\n{steps}"
 
 
 def motion(data: Data, w: Writer) -> Theorem:

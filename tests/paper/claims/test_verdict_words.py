@@ -238,6 +238,6 @@ def test_an_integrator_that_fails_makes_no_theorem_wrong(monkeypatch):
                 continue
             assert check.holds
             apart += "a trial apart from the argument FAILS: ArithmeticError: no flight today" in check.evidence
-    assert apart >= 15
+    assert apart >= 6
     assert "s6n-tangent" in {claim.id for claim in stopped}
     assert not [claim.id for claim in stopped if _checked(claim).kind in (PROVED, MODULO)]
