@@ -74,10 +74,8 @@ def listed(items: Sequence[object]) -> str:
 def inside(names: Sequence[str], box: Sequence[tuple[str, str]]) -> list[str]:
     """The conditions that say that a point is in a box."""
     ends = [pair for name, (low, high) in zip(names, box, strict=True) for pair in ((low, name), (name, high))]
-    written = [
-        tuple(each if each in names else rational(each) for each in pair) for pair in ends if not {*ENDS} & {*pair}
-    ]
-    return [f"{one} < {other}" for one, other in written]
+    finite = [pair for pair in ends if not {*ENDS} & {*pair}]
+    return [" < ".join(each if each in names else rational(each) for each in pair) for pair in finite]
 
 
 def by_expansion(lemma: str, names: Sequence[str], box: Sequence[tuple[str, str]], proof: Data, equal: str) -> str:
@@ -205,8 +203,8 @@ def composed(data: Data, w: Writer) -> Theorem:
     if polynomials:
         statement, proof = agreement(data, w, texts[0], texts[1], None if data["order"] is None else data["order"] + 1)
         return w.every([], statement), f"intros; {proof}"
-    to_order = equal if data["order"] is None else up_to_the_order
-    return to_order(data, w, texts, sides, nonzero)
+    theorem = equal if data["order"] is None else up_to_the_order
+    return theorem(data, w, texts, sides, nonzero)
 
 
 def up_to_the_order(data: Data, w: Writer, texts: Sequence[str], sides: Sequence[Pair], nonzero: list[str]) -> Theorem:
@@ -270,18 +268,17 @@ def derivative(w: Writer, index: int, one: Polynomial, two: Polynomial) -> Theor
     return f"derivable_pt_lim (fun {name} => {texts[0]}) {name} {texts[1]}", proof
 
 
-def solution(data: Data, w: Writer, y: Polynomial, index: int, clock: str, scale: str) -> list[Theorem]:
+def solution(data: Data, w: Writer, y: Polynomial, n: int, clock: str, scale: str, order: int | None) -> list[Theorem]:
     """The derivatives of y, and that it solves the equation of motion up to the order."""
-    speed, height = y.derivative(index), f"({scale} * {w.text(y)})"
-    second = speed.derivative(index)
-    terms = [f"{scale} * {w.text(w.read(jet))} * {clock} ^ {n}" for n, jet in enumerate(data["acceleration"]) if jet]
+    speed, height = y.derivative(n), f"({scale} * {w.text(y)})"
+    second = speed.derivative(n)
+    terms = [f"{scale} * {w.text(w.read(jet))} * {clock} ^ {k}" for k, jet in enumerate(data["acceleration"]) if jet]
     terms += [
         f"-1 * {scale} * {w.text(w.read(jet))} * {height} ^ {i} * {w.text(speed)} ^ {k}"
         for (i, k), jet in data["force"]
     ]
-    order = data["order"] if data["kind"] == "motion" else data["order"] + 1
     equation = agreement(data, w, w.text(second), f"({' + '.join(terms) or '0'})", order)
-    return [derivative(w, index, y, speed), derivative(w, index, speed, second), equation]
+    return [derivative(w, n, y, speed), derivative(w, n, speed, second), equation]
 
 
 def together(claims: Sequence[Theorem], w: Writer) -> Theorem:
@@ -294,7 +291,7 @@ def together(claims: Sequence[Theorem], w: Writer) -> Theorem:
 def motion(data: Data, w: Writer) -> Theorem:
     x, beyond = w.read(data["height"]), None if data["order"] is None else data["order"] + 1
     speed = x.derivative(2)
-    claims = solution(data, w, x, 2, f"({w.names[0]} + {w.names[2]})", "1")
+    claims = solution(data, w, x, 2, f"({w.names[0]} + {w.names[2]})", "1", data["order"])
     claims += [(f"{w.text(w.at(x, 2, 0))} = 0", "ring."), (f"{w.text(w.at(speed, 2, 0))} = {w.names[1]}", "ring.")]
     if data["launch"] is not None:
         launch = {1: w.text(w.read(data["launch"]))}
@@ -308,10 +305,10 @@ def motion(data: Data, w: Writer) -> Theorem:
 def flight(data: Data, w: Writer) -> Theorem:
     z, sigma, t = w.names[:3]
     y, (launch, landing) = w.read(data["rise"]), (w.text(w.read(data[end])) for end in ("launch", "landing"))
-    speed = y.derivative(0)
+    speed, beyond = y.derivative(0), data["order"] + 1
     ends = ((y, 0, "0"), (y, 1, "0"), (speed, 0, launch), (speed, 1, landing))
-    touches = [agreement(data, w, w.text(w.at(part, 0, at)), text, data["order"] + 1) for part, at, text in ends]
-    return together([*solution(data, w, y, 0, f"({sigma} + {z} * {t})", t), *touches], w)
+    touches = [agreement(data, w, w.text(w.at(part, 0, at)), text, beyond) for part, at, text in ends]
+    return together([*solution(data, w, y, 0, f"({sigma} + {z} * {t})", t, beyond), *touches], w)
 
 
 KINDS: dict[str, Callable[[Data, Writer], Theorem]] = {

@@ -10,6 +10,7 @@ import sympy
 from singimpact.algebra.certificates import identical
 from singimpact.algebra.derivations import At, substitution
 from singimpact.paper.claims.claim import Check
+from singimpact.paper.routes.implicit import X, Y
 
 _SAMPLES = [Fraction(n, d) for n, d in ((3, 5), (7, 4), (2, 9), (11, 6), (5, 13), (17, 8), (1, 7), (19, 12))]
 
@@ -54,6 +55,12 @@ def agree(outer: Any, images: Mapping[Any, Any], stated: Any) -> bool:
     if equal:
         substitution(At(outer, images), stated)
     return equal
+
+
+def is_eigenvector(matrix: sympy.MatrixBase, value: Any, vector: tuple[Any, Any]) -> bool:
+    """Whether a matrix of two rows multiplies a vector by a number, with certificates."""
+    images = dict(zip((X, Y), vector, strict=True))
+    return all(agree(a * X + b * Y, images, value * x) for (a, b), x in zip(matrix.tolist(), vector, strict=True))
 
 
 def _cancels(expression: sympy.Expr) -> bool:

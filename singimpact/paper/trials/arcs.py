@@ -1,4 +1,4 @@
-"""The impact map of the package near a tangency with a' > 0: jumps, sides of gamma, eigenvalues, lift-off."""
+"""The impact map of the package near tangency and swan points: eigenvalues on gamma, lift-off, leaves."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

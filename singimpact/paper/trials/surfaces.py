@@ -1,4 +1,4 @@
-"""Numbers on the impact surface of two models: gradients, points of H and Z, jumps, crossings after the first hit."""
+"""Numbers on the impact surface of two models: points of H, crossings after the first hit; exact motions."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -18,9 +18,6 @@ from singimpact.oscillator.model import Oscillator
 from singimpact.paper.trials import true_orbits
 
 Tried = tuple[str, bool]  # what was found on true orbits, in words, and whether it is as it should be
-
-SEED = 20071
-STEP = 1e-5  # of central differences: truncation and rounding are both near 1e-10
 
 
 def path(model: Oscillator, tau: float, x: float, v: float, times: ArrayLike) -> Array:

@@ -238,7 +238,7 @@ def _lift_off(level: sympy.Expr) -> Check:
     return every(
         [
             (
-                f"x_c = {level} + (a/2) t^2 + ... from rest, so that the sign of a decides at the level c alone",
+                f"x_c = {sympy.expand(height.subs({sigma: 0, v: 0}))} + ... from rest, so that the sign of a decides at the level c alone",
                 agree(height, {sigma: 0, v: 0}, level + a * t**2 / 2),
             )
         ],

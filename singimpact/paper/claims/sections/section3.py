@@ -7,9 +7,9 @@ import sympy
 from singimpact.algebra.certificates import positive_on, value_at
 from singimpact.paper.claims.claim import Check, Encoding, Statement
 from singimpact.paper.claims.sections.section2_trials import TRIALS as TRIALS
-from singimpact.paper.claims.verifiers import agree, every, identity, is_zero, same, sample
+from singimpact.paper.claims.verifiers import agree, every, identity, is_eigenvector, is_zero, same, sample
 from singimpact.paper.routes import implicit as route
-from singimpact.paper.routes.implicit import X, Y, a_symbol, r, sigma, t
+from singimpact.paper.routes.implicit import a_symbol, r, sigma, t
 from singimpact.paper.trials import true_orbits
 from singimpact.theory.notation import latex
 
@@ -19,12 +19,6 @@ NORMALLY_HYPERBOLIC = "the theorem of Hirsch, Pugh and Shub"
 
 def _image(matrix: sympy.MatrixBase) -> tuple[sympy.Expr, sympy.Expr]:
     return tuple(matrix * sympy.Matrix([sigma, t]))
-
-
-def is_eigenvector(matrix: sympy.MatrixBase, value: Any, vector: tuple[Any, Any]) -> bool:
-    """Whether a matrix of two rows multiplies a vector by a number, with certificates."""
-    images = dict(zip((X, Y), vector, strict=True))
-    return all(agree(a * X + b * Y, images, value * x) for (a, b), x in zip(matrix.tolist(), vector, strict=True))
 
 
 def _eigenvectors(stated: tuple[tuple[Any, tuple[Any, Any]], ...]) -> Check:

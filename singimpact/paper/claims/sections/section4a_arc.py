@@ -32,15 +32,14 @@ def _discontinuity(stated: tuple[sympy.Expr, int]) -> Check:
     slope = sympy.expand(sympy.diff(launch, t) / fold.k)
     turned = sympy.cancel(slope / (line - t))  # > 0: v_c rises before the horizon and falls after it
     at_horizon = sympy.cancel(fold.horizon()[1] / (6 * fold.k * route.sigma**2))
+    jump = agree(launch, {t: line}, 6 * fold.k * coefficient * route.sigma**2)
     behind = negative_in(launch / fold.k, {route.sigma: (0, sympy.oo), t: (0, sympy.oo)})
 
     return every(
         [
             (
                 f"for sigma < 0 v_c rises up to t = {line} and falls after it, to first order, with v = {at_horizon} a' sigma^2 there",
-                turned.is_positive
-                and agree(launch, {t: line}, 6 * fold.k * coefficient * route.sigma**2)
-                and side == -1,
+                turned.is_positive and jump and side == -1,
             ),
             ("for sigma >= 0 v_c < 0 for t > 0: no low-velocity hit there, and no jump", behind),
         ]

@@ -7,10 +7,9 @@ import sympy
 
 from singimpact.algebra.certificates import negative_on, positive_on, value_at
 from singimpact.paper.claims.claim import Check, Encoding, Statement
-from singimpact.paper.claims.sections.section3 import is_eigenvector
 from singimpact.paper.claims.sections.section4_trials import TRIALS as TRIALS
 from singimpact.paper.claims.sections.section4a_blowup import CUBIC, HALF, ROOT_SIGNS, THREE_HALVES, Q, sign_chain
-from singimpact.paper.claims.verifiers import agree, every, identity, is_zero
+from singimpact.paper.claims.verifiers import agree, every, identity, is_eigenvector, is_zero
 from singimpact.paper.routes import fold
 from singimpact.paper.routes.fold import m
 from singimpact.paper.routes.implicit import r, sigma, t
@@ -135,10 +134,8 @@ def _N_r_form(stated: tuple[sympy.Expr, str]) -> Check:
     """N_r at the solutions of e:fixm: on the cubic with m (m - 1/2) > 0, and in "all" of them, m2 and 3/2 too."""
     formula, where = stated
     check = identity(fold.N_r_at_fixed_points, "derived on the cubic with m (m - 1/2) > 0")(formula)
-    trivial = fold.in_root(fold.N_r_collected())
-    is_r = agree(trivial, {m: THREE_HALVES, fold.w: THREE_HALVES}, r) and agree(
-        fold.Q_at_one(), {m: THREE_HALVES}, sympy.Rational(9, 4)
-    )
+    trivial, at = fold.in_root(fold.N_r_collected()), {m: THREE_HALVES, fold.w: THREE_HALVES}
+    is_r = agree(trivial, at, r) and agree(fold.Q_at_one(), {m: THREE_HALVES}, THREE_HALVES**2)
     covers = where == "m1, m3" or formula.subs(m, THREE_HALVES) == r
     return every(
         [
@@ -148,7 +145,12 @@ def _N_r_form(stated: tuple[sympy.Expr, str]) -> Check:
                 is_r and covers and sign_chain(CUBIC - 2 * r * m, ROOT_SIGNS),
             ),
         ],
-        witness=lambda: {"r": "1/2", "m": "3/2", "N_r": "1/2", "formula": str(formula.subs(m, THREE_HALVES))},
+        witness=lambda: {
+            "r": "1/2",
+            "m": "3/2",
+            "N_r": str(sympy.cancel(trivial.subs(at | {r: HALF}))),
+            "formula": str(formula.subs(m, THREE_HALVES)),
+        },
     )
 
 
