@@ -117,6 +117,20 @@ def as_fraction(tree: Expression) -> Fraction | None:
     return tree.value if isinstance(tree, Number) else None
 
 
+def rational_number(name: str, value: Any) -> Fraction:
+    """A rational that a user gives, as a number or as text.
+
+    Examples
+    --------
+    >>> rational_number("reach", "0.25"), rational_number("reach", "1/3")
+    (Fraction(1, 4), Fraction(1, 3))
+    """
+    exact_value = as_fraction(constant(name, value))
+    if exact_value is None:
+        raise refuse(name, value, "a rational number")
+    return exact_value
+
+
 def rational_near(tree: Expression, bits: int) -> Fraction:
     """A rational within about 2^-bits, relative, of a constant tree; the number itself where it is rational.
 

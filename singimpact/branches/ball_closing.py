@@ -33,18 +33,20 @@ class EnclosedMap:
     Parameters
     ----------
     osc : the model. digits : of the image of a point. bits : of the balls.
+    over, reach : over boxes this number of the model lies so far from its value at most, and D G has a column for it.
     """
 
-    def __init__(self, osc: Oscillator, digits: int, bits: int) -> None:
+    def __init__(self, osc: Oscillator, digits: int, bits: int, over: str = "", reach: Fraction = Fraction(0)) -> None:
         assert osc.period is not None
-        self.osc, self.digits, self.balls = osc, digits, Balls(bits)
+        self.osc, self.digits, self.balls, self.over, self.reach = osc, digits, Balls(bits), over, reach
         self.period = evaluate(osc.period, {}, self.balls)
         self.horizon = Fraction(horizon_of(osc, None))
 
     def __call__(self, state: Sequence[Fraction], radii: Sequence[Fraction] = POINT) -> ProvedImpact:
         """The image of a box, with D G unless it is a point; `Refused` where a member is not shown to hit."""
         box = any(radii)
-        launch = Launch(number(state[0]), number(state[1]), 1, {"tau": radii[0], "v": radii[1]} if box else {})
+        spread = {"tau": radii[0], "v": radii[1]} | ({self.over: self.reach} if self.over else {})
+        launch = Launch(number(state[0]), number(state[1]), 1, spread if box else {})
         return certified_hit(self.osc, launch, self.digits + SPARE, self.horizon, derivative=box)
 
 

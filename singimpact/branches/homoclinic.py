@@ -29,7 +29,7 @@ from singimpact.surface.curve import RESOLUTION
 
 if TYPE_CHECKING:
     from singimpact.branches.enclosed_crossing import EnclosedCrossing
-    from singimpact.branches.horseshoe import Horseshoe
+    from singimpact.branches.horseshoe import Horseshoe, HorseshoeFamily
 
 
 @dataclass(frozen=True)
@@ -143,12 +143,41 @@ class Crossing(Result):
         """
         from singimpact.branches.horseshoe import horseshoe
 
-        if self.kind != "homoclinic":
-            raise InputError(f"{self!r} is not accepted: a horseshoe needs an orbit that comes back to its saddle")
-        loops = horseshoe(self.unstable, self.states)
+        loops = horseshoe(self._comes_back().unstable, self.states)
         if isinstance(loops, str):
             raise InputError(f"no horseshoe is proved next to {self!r}: {loops}")
         return loops
+
+    def horseshoes(self, over: str, between: Any) -> HorseshoeFamily:
+        """Chaos for all values of a number of the model, proved: horseshoes whose sets follow it.
+
+        Parameters
+        ----------
+        over : restitution, clearance, or another number that the period does not depend on, as `branch` takes them.
+        between : its least and largest value, rationals, not far from the model's: the orbit is followed from there.
+
+        Raises
+        ------
+        InputError : as of `horseshoe`; a number that is not accepted.
+
+        Examples
+        --------
+        >>> from singimpact.impact_oscillator import linear
+        >>> (saddle,) = linear("2.8", 0, "0.8").periodic(1, 1)
+        >>> homoclinic_points(saddle)[0].horseshoes("restitution", ("0.8", "0.8004"))
+        <certified horseshoes for all restitution in [0.8, 0.8004], pieces: 1, entropy >= 0.137023>
+        """
+        from singimpact.branches.horseshoe import horseshoe_family
+
+        family = horseshoe_family(self._comes_back().unstable, self.states, over, between)
+        if isinstance(family, str):
+            raise InputError(f"no horseshoes are proved next to {self!r} for all {over} in {between}: {family}")
+        return family
+
+    def _comes_back(self) -> Crossing:
+        if self.kind != "homoclinic":
+            raise InputError(f"{self!r} is not accepted: a horseshoe needs an orbit that comes back to its saddle")
+        return self
 
     def __repr__(self) -> str:
         return (

@@ -13,10 +13,15 @@ orbit; B_j and N are disjoint. If
 there is for every sequence of short loops (n impacts) and long ones (n + k - j) a state of N that follows it: nested
 pieces of one curve. Two sequences part at the first loop that differs, one in N, one in B_j, at a positive distance. So
 the entropy of G is at least ln x, where x^-n + x^-(n + k - j) = 1. No theorem about homoclinic points is used.
+
+For all values p of a number of the model within h of a middle the centres move, c(p) = c + c' (p - middle), and the
+offset gains at most h |D_z G c'_X + D_p G - c'_Y|, by the mean value theorem. An interval is cut into such pieces.
 """
 
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import reduce
 from itertools import product, takewhile
 from math import ceil, sqrt
 from typing import Any, NamedTuple
@@ -25,17 +30,21 @@ import numpy as np
 
 from singimpact.algebra.balls import BITS_A_DIGIT, as_rational
 from singimpact.algebra.certified import Certified, from_ball
-from singimpact.algebra.numbers import Array
+from singimpact.algebra.expressions import names_in
+from singimpact.algebra.numbers import Array, rational_number
 from singimpact.algebra.precision import balls_at
+from singimpact.branches.ball_closing import POINT, EnclosedMap
 from singimpact.branches.enclosed_crossing import prolonged
 from singimpact.branches.krawczyk import least, proved, upper
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.saddle_cones import Cones, Pair, derivative_over, image_of
-from singimpact.flights.derivative import derivative
+from singimpact.dynamics.invariant_arcs import model_step
+from singimpact.flights.derivative import derivative, sensitivity
 from singimpact.flights.enclosures.equation import Refused
 from singimpact.handed_on import flint
-from singimpact.inputs import need
+from singimpact.inputs import need, require
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.moving_number import RESTITUTION, period_over, value_of, with_number
 from singimpact.result import Result
 
 
@@ -49,6 +58,7 @@ class HorseshoeSettings:
     widest : the largest N, relative to the period. share : of the gaps beside it that B_j fills.
     widths : of the other sets at most, relative to N: an impact of a turn may shorten what the whole turn stretches.
     margin : by how much a set is narrower, and higher, than the image that crosses it.
+    halvings : of an interval of a number, at most. rounds : of Newton's method for the orbit at a middle.
     """
 
     digits: int = 20
@@ -57,6 +67,8 @@ class HorseshoeSettings:
     share: Fraction = Fraction(1, 2)
     widths: tuple[int, ...] = (1, 5)
     margin: Fraction = Fraction(9, 10)
+    halvings: int = 12
+    rounds: int = 6
 
 
 SETTINGS = HorseshoeSettings()
@@ -69,11 +81,13 @@ class CrossedSet(Result):
     Attributes
     ----------
     centre : (tau, v). frame : columns along which the map stretches and contracts. radii : a and b along them.
+    drift : by which the centre moves with a number of the model, if it is for all values of an interval.
     """
 
     centre: Pair
     frame: tuple[Pair, Pair]
     radii: Pair
+    drift: Pair = POINT
 
     @property
     def box(self) -> Pair:
@@ -98,16 +112,43 @@ class Horseshoe(Result):
     loops : impacts of the short loop, next to the saddle, and of the long one, along the homoclinic orbit.
     entropy : `Certified` lower bound of the topological entropy of the impact map, per impact.
     sets : N and the sets of the long loop, in their order. oscillator : the model.
+    reach : by which a number may differ from the model's, where it is one of a family: the sets move with it.
     """
 
     loops: tuple[int, int]
     entropy: Certified
     sets: tuple[CrossedSet, ...]
     oscillator: Oscillator
+    reach: Fraction = Fraction(0)
 
     def __repr__(self) -> str:
         return (
             f"<certified horseshoe: loops of {self.loops[0]} and {self.loops[1]} impacts in any order, "
+            f"entropy >= {float(self.entropy.value):.6g}>"
+        )
+
+
+@dataclass(frozen=True)
+class HorseshoeFamily(Result):
+    """Proved chaos for all values of a number of the model: horseshoes whose sets follow it.
+
+    Attributes
+    ----------
+    over : the number. between : the ends of its interval, as rationals.
+    entropy : `Certified` lower bound of the topological entropy, per impact, the least of the pieces.
+    pieces : a horseshoe for each piece of the interval, at its middle, in their order. oscillator : the model.
+    """
+
+    over: str
+    between: Pair
+    entropy: Certified
+    pieces: tuple[Horseshoe, ...]
+    oscillator: Oscillator
+
+    def __repr__(self) -> str:
+        low, high = map(float, self.between)
+        return (
+            f"<certified horseshoes for all {self.over} in [{low:.9g}, {high:.9g}], pieces: {len(self.pieces)}, "
             f"entropy >= {float(self.entropy.value):.6g}>"
         )
 
@@ -124,18 +165,69 @@ def horseshoe(saddle: PeriodicOrbit, states: Array) -> Horseshoe | str:
         return proved(lambda: _search(saddle, states, bits))  # type: ignore[no-any-return]
 
 
-def _search(saddle: PeriodicOrbit, states: Array, bits: int) -> Horseshoe:
-    """The first N, from wide to narrow, for which all sets are crossed."""
+def horseshoe_family(saddle: PeriodicOrbit, states: Array, over: Any, between: Any) -> HorseshoeFamily | str:
+    """Horseshoes next to a homoclinic orbit for all values of a number, proved; or the reason why they are not.
+
+    Parameters
+    ----------
+    saddle, states : as of `horseshoe`, of one value of the number.
+    over : restitution, clearance or a parameter that the period does not depend on. between : its least and largest.
+    """
+    osc = with_number(saddle.oscillator, over)
+    moving = period_over(osc, (over,))
+    free = moving is not None and over not in names_in(moving)
+    require(free, "over", over, "a number that the period does not depend on")
+    limits = " in (0, 1]" if over == RESTITUTION else ""
+    ends = [rational_number("between", end) for end in between] if isinstance(between, tuple | list) else []
+    ordered = len(ends) == 2 and ends[0] < ends[1] and (not limits or 0 < ends[0] < ends[1] <= 1)
+    require(ordered, "between", between, f"two rational numbers low < high{limits}")
+    bits = ceil(SETTINGS.digits * BITS_A_DIGIT) + 64
+    with balls_at(bits):
+        return proved(lambda: _pieces(replace(saddle, oscillator=osc), states, over, (ends[0], ends[1]), bits))  # type: ignore[no-any-return]
+
+
+def _pieces(saddle: PeriodicOrbit, states: Array, over: str, between: Pair, bits: int) -> HorseshoeFamily:
+    """The interval is halved where no horseshoe is proved; each piece starts from the orbit of the one before."""
+    route = _followed(saddle, states, bits, over)
+    pieces, todo, least = list[Horseshoe](), [between], (between[1] - between[0]) / 2**SETTINGS.halvings
+    while todo:
+        low, high = todo.pop()
+        middle, reach = (low + high) / 2, (high - low) / 2
+        try:
+            there = route.at(middle, reach)
+            pieces.append(_crossed(there))
+            route = there
+        except Refused:
+            if reach < least:
+                raise
+            todo += [(middle, high), (low, middle)]
+    entropy = min((piece.entropy for piece in pieces), key=lambda bound: float(bound.value))
+    return HorseshoeFamily(over, between, entropy, tuple(pieces), saddle.oscillator)
+
+
+def _followed(saddle: PeriodicOrbit, states: Array, bits: int, over: str = "", reach: Fraction = POINT[0]) -> "_Route":
+    """The homoclinic orbit from next to the saddle until next to it, as a route for sets."""
     cones = Cones(saddle, SETTINGS.digits, bits)
     _, states, _ = prolonged(cones, cones, states, SETTINGS.near)
-    route = _Route(cones, states)
-    n, why = int(saddle.n), "no impact of the orbit is near enough to the saddle"
-    for j, widest in product(range(n * ((len(states) - 1) // n), -1, -n), SETTINGS.widths):
+    return _Route(cones, states, over, reach)
+
+
+def _search(saddle: PeriodicOrbit, states: Array, bits: int) -> Horseshoe:
+    return _crossed(_followed(saddle, states, bits))
+
+
+def _crossed(route: "_Route") -> Horseshoe:
+    """The first N, from wide to narrow, for which all sets are crossed."""
+    n, why = route.n, "no impact of the orbit is near enough to the saddle"
+    order = product(range(n * ((len(route.states) - 1) // n), -1, -n), SETTINGS.widths)
+    for j, widest in (*route.first, *order):
         size = abs(route.places[j, 0])
         if not (abs(route.places[j, 1]) < 0.1 * size < 0.1 * SETTINGS.widest * route.period):
             continue
         try:
-            return route.looped(j, Fraction(size / sqrt(route.far)), widest)
+            loops = route.looped(j, Fraction(size / sqrt(route.far)), widest)
+            route.first = ((j, widest),)
+            return loops
         except Refused as reason:
             why = str(reason)
     raise Refused(why)
@@ -161,20 +253,61 @@ class _Image(NamedTuple):
 
 
 class _Route:
-    """Impacts of a homoclinic orbit, with directions."""
+    """Impacts of a homoclinic orbit, with directions, and how they move with a number of the model."""
 
-    def __init__(self, cones: Cones, states: Array) -> None:
-        self.cones, self.states, self.map = cones, states, cones.map
+    def __init__(self, cones: Cones, states: Array, over: str, reach: Fraction) -> None:
+        osc, balls = cones.saddle.oscillator, cones.map.balls
+        self.cones, self.states, self.reach = cones, states, reach
+        self.first: tuple[tuple[int, int], ...] = ()  # sets that were crossed for another value of the number
+        self.map = EnclosedMap(osc, SETTINGS.digits, balls.bits, over, reach) if over else cones.map
         self.n, self.period = int(cones.saddle.n), float(cones.map.period)
         self.far = abs(float(cones.orbit.multipliers[0][0].value))  # type: ignore[index]
-        away = states - [float(part) for part in cones.centre]
+        away = states - [*map(float, cones.centre)]
         away[:, 0] -= self.period * np.rint(away[:, 0] / self.period)
-        self.places = away @ np.array([[float(part) for part in row] for row in cones.coordinates]).T
-        self.slopes = derivative(cones.saddle.oscillator, states[:-1, 0], states[:-1, 1]).matrix
+        self._along, self._across = np.array(cones.coordinates, dtype=float)
+        self.places = away @ np.stack([self._along, self._across], axis=1)
+        self.slopes = derivative(osc, states[:-1, 0], states[:-1, 1]).matrix
+        self.drifts, self.homes = np.zeros_like(states), np.zeros((self.n, 2))
+        if over:
+            # of the saddle: its image moves as it does; of the orbit: it stays homoclinic, to first order
+            turn = [_shifts(osc, state, over) for state in zip(cones.saddle.tau, cones.saddle.v, strict=True)]
+            total = reduce(lambda done, step: step @ done, turn)
+            self.homes[0] = np.linalg.solve(np.eye(2) - total[:2, :2], total[:2, 2])
+            for i in range(1, self.n):
+                self.homes[i] = (turn[i - 1] @ [*self.homes[i - 1], 1])[:2]
+            by_number = np.array([_shifts(osc, state, over)[:2, 2] for state in states[:-1]])
+            self.drifts = self._moved(by_number, [self._across @ self.homes[0], self._along @ self.homes[0]])
+
+    def _moved(self, changes: Array, ends: Sequence[float]) -> Array:
+        """Changes of the states where images change, with parts along W^s at the start, along W^u at the end."""
+        count = len(self.states)
+        matrix, goal = np.zeros((2 * count, 2 * count)), np.array([*changes.ravel(), *ends])
+        for i, slope in enumerate(self.slopes):
+            matrix[2 * i : 2 * i + 2, 2 * i : 2 * i + 4] = np.hstack([-slope, np.eye(2)])
+        matrix[-2, :2], matrix[-1, -2:] = self._across, self._along
+        return np.asarray(np.linalg.solve(matrix, goal).reshape(count, 2))
+
+    def at(self, value: Fraction, reach: Fraction) -> "_Route":
+        """The orbit of another value of the number, by Newton's method: nothing is shown."""
+        saddle, over = self.cones.saddle, self.map.over
+        shift = float(value) - value_of(saddle.oscillator, over)
+        osc = saddle.oscillator.replace(**{over: value})
+        tau, v = np.array([saddle.tau, saddle.v], dtype=float) + shift * self.homes.T
+        cones = Cones(replace(saddle, oscillator=osc, tau=tau, v=v), SETTINGS.digits, self.map.balls.bits)
+        states = self.states + shift * self.drifts
+        for _ in range(SETTINGS.rounds):
+            need((states[:, 1] > 0).all(), Refused(f"no orbit is found at {over} = {float(value):.6g}"))
+            route = _Route(cones, states, "", reach)
+            missed = model_step(osc, states[:-1]) - states[1:]
+            missed[:, 0] -= self.period * np.rint(missed[:, 0] / self.period)
+            states = states + route._moved(missed, [-route.places[0, 1], -route.places[-1, 0]])
+        there = _Route(cones, states, over, reach)
+        there.first = self.first
+        return there
 
     def looped(self, j: int, a: Fraction, widest: int) -> Horseshoe:
         """The loops through an N of this size and the impact j; `Refused` where a set is not crossed."""
-        home = CrossedSet(self.cones.centre, _rows(self.cones.frame), (a, a))
+        home = CrossedSet(self.cones.centre, _rows(self.cones.frame), (a, a), _pair(self.homes[0]))
         ends = range(len(self.states) - 1, j, -self.n)
         back = list(takewhile(lambda k: np.abs(self.places[k]).max() <= a / 2, ends))
         if not back or len(back) == len(ends):
@@ -183,8 +316,7 @@ class _Route:
         if not (last.width(home.radii) > a and last.height(home.radii) < a):
             raise Refused("the set round the saddle does not cross itself")
         for i, frame in enumerate(frames):
-            centre = tuple(Fraction(float(coordinate)) for coordinate in self.states[j + i])
-            new = CrossedSet(centre, frame, (Fraction(0), Fraction(0)))  # type: ignore[arg-type]
+            new = CrossedSet(_pair(self.states[j + i]), frame, POINT, _pair(self.drifts[j + i]))
             seen = self._image(sets[-1], new, 1 if i else self.n)
             width = (
                 self._beside(new, seen, home)
@@ -194,15 +326,14 @@ class _Route:
             if not width > 0:
                 raise Refused(f"the image of the set before impact {j + i} does not stretch")
             radii = width, seen.height(sets[-1].radii) / SETTINGS.margin
-            # doubles, which are short to write; the margins are far wider than their rounding
-            sets.append(CrossedSet(new.centre, frame, (Fraction(float(radii[0])), Fraction(float(radii[1])))))
+            sets.append(replace(new, radii=_pair(radii)))
             if i == 0 and not self._apart(sets[-1], home):
                 raise Refused("the first set of the long loop is not apart from that round the saddle")
         seen = self._image(sets[-1], home, 1)
         if not (seen.width(sets[-1].radii) > a and seen.height(sets[-1].radii) < a):
             raise Refused("the image of the last set does not cross that round the saddle")
         loops = self.n, self.n + len(frames)
-        return Horseshoe(loops, _entropy(*loops), tuple(sets), self.cones.saddle.oscillator)
+        return Horseshoe(loops, _entropy(*loops), tuple(sets), self.cones.saddle.oscillator, self.reach)
 
     def _frames(self, j: int, k: int) -> list[tuple[Pair, Pair]]:
         """Columns next to the tangents of W^u and W^s at the impacts j ... k - 1."""
@@ -222,8 +353,17 @@ class _Route:
         (a, b), (c, d) = other.frame
         det = a * d - b * c
         inverse = self.cones.matrix(((d / det, -b / det), (-c / det, a / det)))
+        way = self.reach * abs(one.drift[0]), self.reach * abs(one.drift[1])  # of the centre
+        box = one.box[0] + way[0], one.box[1] + way[1]
+        M = derivative_over(self.map, one.centre, box, impacts).table()
+        if self.map.over:  # D along the way of the centre alone is narrower than over the set
+            D = derivative_over(self.map, one.centre, way, impacts).table()
+            rates = [self.map.balls.rational(rate) for rate in (*one.drift, *other.drift)]
+            moved = [row[0] * rates[0] + row[1] * rates[1] + row[2] for row in D[:2]]
+            spread = self.map.balls.interval(-self.reach, self.reach)
+            off = [entry + spread * (rate - goal) for entry, rate, goal in zip(off, moved, rates[2:], strict=True)]
         offset = inverse * flint.arb_mat([[entry] for entry in off])
-        M = inverse * derivative_over(self.map, one.centre, one.box, impacts) * self.cones.matrix(one.frame)
+        M = inverse * flint.arb_mat([row[:2] for row in M[:2]]) * self.cones.matrix(one.frame)
         u, s, m12, m21, m22 = (upper(entry) for entry in (offset[0, 0], offset[1, 0], M[0, 1], M[1, 0], M[1, 1]))
         need(not M[0, 0].contains(0) and M[0, 0].is_finite(), Refused("a set is not shown to be stretched"))
         return _Image(u, s, least(M[0, 0]), m12, m21, m22)
@@ -244,12 +384,26 @@ class _Route:
         """Whether every |xi| of a set is above that of N."""
         row = self.cones.coordinates[0]
         spread = [abs(row[0] * one.frame[0][q] + row[1] * one.frame[1][q]) * one.radii[q] for q in (0, 1)]
+        drift = [x - y for x, y in zip(one.drift, home.drift, strict=True)]
+        spread.append(self.reach * abs(row[0] * drift[0] + row[1] * drift[1]))
         return least(self._xi(one.centre)) - sum(spread) > home.radii[0]
 
 
 def _rows(frame: Any) -> tuple[Pair, Pair]:
     (a, b), (c, d) = frame
     return (Fraction(a), Fraction(b)), (Fraction(c), Fraction(d))
+
+
+def _pair(numbers: Iterable[Any]) -> Pair:
+    """Doubles, which are short to write; sets are far wider than their rounding."""
+    first, second = (Fraction(float(x)) for x in numbers)
+    return first, second
+
+
+def _shifts(osc: Oscillator, state: Iterable[Any], over: str) -> Array:
+    """D G by the state and a number, which stays."""
+    tau, v = state
+    return np.vstack([sensitivity(osc, float(tau), float(v), (over,)).matrix, [0, 0, 1]])
 
 
 def _unit(vector: Array) -> Array:

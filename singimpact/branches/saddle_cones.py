@@ -143,11 +143,12 @@ class Cones:
 
 
 def derivative_over(flown: EnclosedMap, centre: Pair, radii: Pair, impacts: int) -> Any:
-    """D G^m over a box, for m impacts, each of which is shown to be smooth."""
-    total = flint.arb_mat([[1, 0], [0, 1]])
+    """D G^m over a box, for m impacts, each shown to be smooth; a number that moves is the last unknown."""
+    own = 2 + bool(flown.over)
+    total = flint.arb_mat([[int(row == column) for column in range(own)] for row in range(own)])
     for _ in range(impacts):
-        hit = smooth(flown(centre, radii))
-        total = flint.arb_mat(hit.derivative) * total
+        hit = smooth(flown(centre, radii), invertible=not flown.over)
+        total = flint.arb_mat([*hit.derivative, [0, 0, 1]][:own]) * total
         centre = as_rational(hit.tau), as_rational(hit.v)
         radii = upper(hit.tau - hit.tau.mid()), upper(hit.v - hit.v.mid())
     return total
@@ -163,17 +164,17 @@ def image_of(flown: EnclosedMap, centre: Pair, impacts: int) -> tuple[Any, Any]:
     return hit.tau, hit.v
 
 
-def smooth(hit: ProvedImpact) -> ProvedImpact:
-    """The impact, if G is shown to be a local diffeomorphism at every launch of its box.
+def smooth(hit: ProvedImpact, invertible: bool = True) -> ProvedImpact:
+    """The impact, if G is shown to be smooth, or a local diffeomorphism, at every launch of its box.
 
     Raises
     ------
     Refused : x' may vanish at the hit, v after it, or det D G.
     """
-    (a, b), (c, d) = hit.derivative
+    (a, b, *_), (c, d, *_) = hit.derivative
     if not (hit.velocity < 0 and hit.v > 0):
         raise Refused("a flight next to the orbit is not shown to hit with x' < 0 and to leave with v > 0")
-    if (a * d - b * c).contains(0) or not (a * d - b * c).is_finite():
+    if invertible and ((a * d - b * c).contains(0) or not (a * d - b * c).is_finite()):
         raise Refused("G is not shown to be invertible next to the orbit")
     return hit
 

@@ -13,7 +13,7 @@ from singimpact.algebra.certified import Certified, from_ball
 from singimpact.algebra.numbers import sign_of
 from singimpact.branches.border import BorderOrbit
 from singimpact.branches.enclosed_event import EnclosedEvent
-from singimpact.branches.horseshoe import Horseshoe
+from singimpact.branches.horseshoe import Horseshoe, HorseshoeFamily
 from singimpact.branches.krawczyk import EnclosedOrbit
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.certificates.checker import (
@@ -94,8 +94,8 @@ def certify(result: Any) -> Certificate:
     ----------
     result : of `osc.impact_map` or `osc.first_hit` for one state with `digits`; a periodic orbit with impacts, of
         `osc.periodic`; or the `.certified` of one of these. `osc.chatter_limit` of one state with v > 0 and with
-        `digits`; `crossing.horseshoe()`; `event.certified()` over a parameter of g or f; an orbit of
-        `si.border_orbits` with `digits`; or `osc.certified_gamma()`.
+        `digits`; `crossing.horseshoe()` or `.horseshoes(over, between)`; `event.certified()` over a parameter of g or
+        f; an orbit of `si.border_orbits` with `digits`; or `osc.certified_gamma()`.
 
     Returns
     -------
@@ -119,6 +119,8 @@ def certify(result: Any) -> Certificate:
         return _of_limit(result)
     if isinstance(result, Horseshoe):
         return _sealed("horseshoe", result.oscillator, _of_horseshoe(result))
+    if isinstance(result, HorseshoeFamily):
+        return _over(result.over, _sealed("horseshoes", result.oscillator, _of_family(result)))
     if isinstance(result, EnclosedEvent):
         return _of_event(result)
     if isinstance(result, BorderOrbit):
@@ -231,7 +233,7 @@ def _of_event(event: EnclosedEvent) -> Certificate:
 
 
 def _of_border(orbit: BorderOrbit) -> Certificate:
-    """The certificate of a border orbit; clearance or restitution, where they are varied, are numbers by name."""
+    """The certificate of a border orbit."""
     if orbit.certified is None:
         raise InputError(f"the border orbit is not certified: {'; '.join(orbit.notes) or 'ask for digits='}")
     statement = {
@@ -242,29 +244,52 @@ def _of_border(orbit: BorderOrbit) -> Certificate:
         "impacts": str(orbit.returned.entry),
         "completes": orbit.side,
     }
-    sealed = _sealed("border orbit", orbit.oscillator, statement)
-    if orbit.over in orbit.oscillator.parameters:
+    return _over(orbit.over, _sealed("border orbit", orbit.oscillator, statement))
+
+
+def _over(over: str, sealed: Certificate) -> Certificate:
+    """The certificate whose model has the number by its name, where it is no parameter anyway."""
+    model = sealed.content["model"]
+    if over in model.get("parameters", {}):
         return sealed
-    model = {**sealed.content["model"], orbit.over: orbit.over}
+    model = {**model, over: over}
     content = {name: entry for name, entry in sealed.content.items() if name != "digest"} | {"model": model}
     return Certificate({**content, "digest": digest_of(content)})
 
 
 def _of_horseshoe(horseshoe: Horseshoe) -> dict[str, Any]:
     """The statement of a certificate of a horseshoe, as text."""
-    sets = [
-        {
-            "centre": [str(x) for x in crossed.centre],
-            "frame": [[str(x) for x in row] for row in crossed.frame],
-            "radii": [str(x) for x in crossed.radii],
-        }
-        for crossed in horseshoe.sets
-    ]
     return {
         "period": str(horseshoe.oscillator.period),
-        "loops": [str(n) for n in horseshoe.loops],
-        "sets": sets,
+        **_of_sets(horseshoe, ("centre", "radii")),
         "entropy": horseshoe.entropy.as_dict(),
+    }
+
+
+def _of_sets(horseshoe: Horseshoe, pairs: tuple[str, ...]) -> dict[str, Any]:
+    """The loops and the sets, as text."""
+    sets = [
+        {name: [str(x) for x in getattr(crossed, name)] for name in pairs}
+        | {"frame": [[str(x) for x in row] for row in crossed.frame]}
+        for crossed in horseshoe.sets
+    ]
+    return {"loops": [str(n) for n in horseshoe.loops], "sets": sets}
+
+
+def _of_family(family: HorseshoeFamily) -> dict[str, Any]:
+    """The statement of a certificate of horseshoes for all values of a number, as text."""
+    (low, high), number, pieces = family.between, family.between[0], []
+    for piece in family.pieces:
+        number += piece.reach
+        sets = _of_sets(piece, ("centre", "radii", "drift"))
+        pieces.append({"number": str(number), "reach": str(piece.reach), **sets})
+        number += piece.reach
+    return {
+        "over": family.over,
+        "between": [str(low), str(high)],
+        "period": str(family.oscillator.period),
+        "entropy": family.entropy.as_dict(),
+        "pieces": pieces,
     }
 
 

@@ -338,7 +338,7 @@ EVENTS = tuple(kind.name for kind in KINDS if kind.is_class)
     metavar="NUMBER",
     help="With gamma: tan(omega_d T)/omega_d at most, T = tau_* - tau; T if nonlinear.  [default: as far as it gets]",
 )
-@click.option("--between", type=(str, str), metavar="LOW HIGH", help="With gamma: for all restitutions of an interval.")
+@click.option("--between", type=(str, str), metavar="LOW HIGH", help="With gamma or --horseshoe: for all restitutions.")
 @whole_option("--digits", 1, 1000, "Significant digits.", 30)
 @click.option("-o", "--output", metavar="FILE.json", help="The certificate.  [default: standard output]")
 def certify_command(files: tuple[str, ...], tau: str | None, v: str | None, **options: Any) -> None:
@@ -356,8 +356,8 @@ def certify_command(files: tuple[str, ...], tau: str | None, v: str | None, **op
     if files and files[0] == "gamma":
         _gamma(files[1:], tau, options)
         return
-    if options["reach"] is not None or options["between"] is not None:
-        raise InputError("--reach and --between are of gamma: give `certify gamma`")
+    if options["reach"] is not None or (options["between"] is not None and not options["horseshoe"]):
+        raise InputError("--reach and --between are of gamma: give `certify gamma`; or --horseshoe N K with --between")
     if files:
         for path in files:
             emit(f"{path}: {read_certificate(path)!r} holds", None)
@@ -413,7 +413,8 @@ def _made(model: Any, kind: str, near: State, options: dict[str, Any]) -> Any:
         return certify((_event(orbit, *wanted) if wanted else orbit).certified(digits))
     crossings = homoclinic_points(_orbit(model, kind, options[kind], near, saddle=True))
     need(len(crossings), InputError("no homoclinic orbit of the saddle is found"))
-    return certify(crossings[0].horseshoe())
+    between = options["between"]
+    return certify(crossings[0].horseshoes("restitution", between) if between else crossings[0].horseshoe())
 
 
 def _border(model: Any, given: tuple[str, float, float], digits: int) -> Any:

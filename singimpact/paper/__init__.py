@@ -34,7 +34,6 @@ _FILES = {
     "sections": "NOTATION",
     "sections.stored_sections": "cache kept_sections marks_of",
     "sections.section_formulas": "with_Q",
-    "trials.enclosed_swan": "BITS Bracket LAST Side bracket",
     "trials.first_order_feet": "MODELS clearance measured",
     "trials.hertz_orbits": "POWERS above constant edge",
     "trials.loop_heights": "SWANS generations heights inner_start",

@@ -12,7 +12,7 @@ from flint import ctx
 from .chatter_limit import border_orbit, chatter_limit
 from .event import event
 from .formulas import Clock, Refused, Wrong
-from .horseshoe import horseshoe
+from .horseshoe import horseshoe, horseshoes
 from .invariant_arc import invariant_arc
 from .motion import Flight, Model, balls_of, compared, landed, launched
 from .periodic_orbit import periodic_orbit
@@ -42,6 +42,7 @@ STATEMENTS: dict[str, Callable[[Model, dict[str, Any], int], None]] = {
     "periodic orbit": periodic_orbit,
     "chatter limit": chatter_limit,
     "horseshoe": horseshoe,
+    "horseshoes": horseshoes,
     "event": event,
     "border orbit": border_orbit,
     "invariant arc": invariant_arc,

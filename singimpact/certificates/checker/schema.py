@@ -214,6 +214,8 @@ MODEL = {
     "upper_restitution?": formula,
 }
 WALL = one_of("lower", "upper")
+PAIR, LOOPS = [number(), 2, 2], [whole(1, 1000), 2, 2]
+SET = {"centre": PAIR, "frame": [PAIR, 2, 2], "radii": [SIZE, 2, 2]}
 LAUNCH = {"tau": formula, "v": formula}
 ORBIT = {"period": formula, "periods": whole(1, 1000)}
 EVENT = {"kind": one_of(*KINDS), "over": name, "parameter": ball(), **ORBIT}
@@ -248,9 +250,20 @@ STATEMENTS: dict[str, Callable[[dict[str, Any]], Form]] = {
     "chatter limit": lambda _: {"launch": LAUNCH, "ends": one_of("accumulation", "lift-off"), "tau": ball()},
     "horseshoe": lambda _: {
         "period": formula,
-        "loops": [whole(1, 1000), 2, 2],
+        "loops": LOOPS,
         "entropy": ball(1),
-        "sets": [{"centre": [number(), 2, 2], "frame": [[number(), 2, 2], 2, 2], "radii": [SIZE, 2, 2]}, 2, 1000],
+        "sets": [SET, 2, 1000],
+    },
+    "horseshoes": lambda _: {
+        "over": name,
+        "between": [number(), 2, 2],
+        "period": formula,
+        "entropy": ball(1),
+        "pieces": [
+            {"number": number(), "reach": SIZE, "loops": LOOPS, "sets": [SET | {"drift": PAIR}, 2, 1000]},
+            1,
+            10_000,
+        ],
     },
     "event": lambda content: (
         EVENT
@@ -371,6 +384,10 @@ SENTENCES: dict[str, Callable[[dict[str, Any]], str]] = {
     ),
     "horseshoe": lambda content: (
         f"a horseshoe: loops of {content['loops'][0]} and {content['loops'][1]} impacts, "
+        f"entropy >= {below(content['entropy'])}"
+    ),
+    "horseshoes": lambda content: (
+        f"horseshoes for all {content['over']} in [{', '.join(content['between'])}], "
         f"entropy >= {below(content['entropy'])}"
     ),
     "event": event,

@@ -12,7 +12,7 @@ from flint import arb
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.certified import Certified, from_ball
 from singimpact.algebra.expressions import Expression, evaluate, names_in, number
-from singimpact.algebra.numbers import as_float, as_fraction, compare, constant
+from singimpact.algebra.numbers import as_float, as_fraction, compare, constant, rational_number
 from singimpact.algebra.precision import balls_at
 from singimpact.contact.zero_ahead import ContactZero, next_zero
 from singimpact.dynamics.gamma_proof.after import PIECES, Lost, Settled, lost_contact, settled
@@ -198,7 +198,7 @@ def certified_gamma(
         )
     zero = _zero_ahead(osc, tau)
     ends = _ends(osc, restitution)
-    wanted = None if reach is None else _rational("reach", reach)
+    wanted = None if reach is None else rational_number("reach", reach)
     if wanted is not None and not 0 < wanted <= 1000:
         raise refuse("reach", reach, "a rational number > 0")
     with balls_at(BITS):
@@ -247,16 +247,9 @@ def _ends(osc: Oscillator, restitution: tuple[Any, Any] | None) -> _Ends:
         return _Ends(exact, exact, osc.restitution)
     if not isinstance(restitution, tuple | list) or len(restitution) != 2:
         raise refuse("restitution", restitution, "two rational numbers (low, high), 0 < low < high < 1")
-    low, high = (_rational("restitution", end) for end in restitution)
+    low, high = (rational_number("restitution", end) for end in restitution)
     require(0 < low < high < 1, "restitution", restitution, "two rational numbers (low, high), 0 < low < high < 1")
     return _Ends(low, high, None)
-
-
-def _rational(name: str, value: Any) -> Fraction:
-    exact = as_fraction(constant(name, value))
-    if exact is None:
-        raise refuse(name, value, "a rational number")
-    return exact
 
 
 def _zero_ahead(osc: Oscillator, tau: Any) -> ContactZero:

@@ -15,10 +15,10 @@ from singimpact.inputs import need, unknown
 from singimpact.paper.claims.beyond import hertz
 from singimpact.paper.claims.beyond.every_order import j
 from singimpact.paper.claims.beyond.foot import FORMULA
-from singimpact.paper.claims.beyond.loops import inner, preimage, r
+from singimpact.paper.claims.sections.section6_loops import inner, preimage, r
 from singimpact.paper.routes import first_order, unfolding as swan
 from singimpact.paper.sections import NOTATION
-from singimpact.paper.sections.section_formulas import section2, section3, section4, section5, section6
+from singimpact.paper.sections.section_formulas import section2, section3, section4, section5, section6, section7
 from singimpact.paper.sections.section_templates import section_of
 from singimpact.theory.notation import latex
 
@@ -74,7 +74,7 @@ def _flight() -> Any:
     return sympy.factor(height.subs(swan.u, swan.s + 1))
 
 
-FORMULAS = (section2, section3, section4, section5, section6, beyond)
+FORMULAS = (section2, section3, section4, section5, section6, section7, beyond)
 SECTIONS: dict[str, Callable[[], Section]] = {
     formulas.__name__: partial(section_of, formulas.__name__, formulas) for formulas in FORMULAS
 }
@@ -84,11 +84,13 @@ OTHER_NAMES = {
     "4": "section4",
     "5": "section5",
     "6": "section6",
+    "7": "section7",
     "surface": "section2",
     "regular": "section3",
     "tangency": "section4",
     "swan": "section5",
     "unfolding": "section6",
+    "loops": "section7",
 }
 
 

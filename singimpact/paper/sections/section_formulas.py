@@ -8,6 +8,7 @@ from singimpact.documents.document_steps import Step
 from singimpact.paper.claims.next_sigma import next_sigma
 from singimpact.paper.claims.sections.section4b import M, ell, on_ray
 from singimpact.paper.claims.sections.section6_exact import LANDING, OUTLINE, z
+from singimpact.paper.claims.sections.section6_loops import grazing, inner, next_length_slopes, preimage, resting
 from singimpact.paper.routes import fold, implicit as route, ratios, swan, unfolding
 from singimpact.paper.routes.fold import k, m
 from singimpact.paper.routes.implicit import a_symbol, f_symbol, r, sigma, t, v
@@ -286,7 +287,15 @@ def section6() -> dict[str, object]:
         "shadow": unfolding.shadow(),
         "G_A": (unfolding.reset(unfolding.C)[0], sympy.expand(-unfolding.r * unfolding.reset(unfolding.C)[1])),
         "excess": sympy.expand(longer + unfolding.r * unfolding.impact_velocity()),
+        "by_place": next_length_slopes()[0],
+        "grazing_start": grazing()[0],
+        "resting_start": resting()[0],
     }
+
+
+def section7() -> dict[str, object]:
+    """The formulas of section 7, by their names in its template."""
+    return {"inner": sympy.factor(inner()), "preimage": sympy.factor(preimage())}
 
 
 def _slope(point: tuple[Any, Any], curve: Any, image: tuple[Any, Any]) -> Any:

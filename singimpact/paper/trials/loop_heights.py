@@ -1,4 +1,4 @@
-"""The stable manifold of X at an unfolded negative swan: heights over lines before A, and feet of orbits above gamma.
+"""The stable manifold of X at an unfolded negative swan: heights over lines before A.
 
 A line lies h half distances of A and B before A, and heights are v/(a'(A) (A - tau)^2).
 """
@@ -12,12 +12,10 @@ from typing import NamedTuple
 import numpy as np
 
 from singimpact.algebra.numbers import Array
-from singimpact.dynamics.threshold import threshold
 from singimpact.dynamics.unfolded_swan import swan_configuration
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.paper.trials.true_orbits import System, resting_times
-from singimpact.theory.fixed_points import multipliers
 
 RATES = ("3/10", "1/2", "4/5")
 GENERATIONS = 4
@@ -26,9 +24,6 @@ REST = 1e-8  # half distances behind A from which an orbit at rest is followed: 
 STEPS = 8  # of the secant method; 5 reach rounding
 FLIGHTS = 2000  # of an orbit at most, until the rest of its chatter is summed up
 SLOW = 1e-9  # the velocity from which on it is, behind B
-GAMMA_LINE = 0.05  # h at which feet beside gamma are measured
-PHASES = (0.0, 0.25, 0.5, 0.75)  # of ln delta/ln mu
-DEEP = 1e-3  # the distance from gamma there
 
 
 Swan = System  # with an unfolded negative swan near t = 0
@@ -127,29 +122,3 @@ def heights(swan: Swan, rate: str) -> Heights:
         off = miss(now)
     rows = now.reshape(len(LINES), -1)
     return Heights(LINES, tuple(tuple(row.tolist()) for row in rows), float(np.abs(off).max()))
-
-
-@dataclass(frozen=True)
-class Feet:
-    """Feet minus X over one line, above gamma at relative distances delta of five phases and three periods.
-
-    Attributes
-    ----------
-    lambda_, mu : at A. offsets : a row for each period, delta is divided by mu from one to the next.
-    """
-
-    lambda_: float
-    mu: float
-    offsets: tuple[tuple[float, ...], ...]
-
-
-@cache
-def feet_beside_gamma(swan: Swan, rate: str) -> Feet:
-    """Foot - X where ln delta/ln mu takes the same phases in three successive periods."""
-    at, both = _setting(swan, rate), multipliers(1, rate, 20)
-    mu = float(both.mu.value)
-    tau = at.A - GAMMA_LINE * (at.B - at.A) / 2
-    edge = float(threshold(at.osc, tau).v)
-    distances = [DEEP * mu ** -(period + np.array(PHASES)) for period in range(3)]
-    rows = [_feet(at.osc, at.B, np.full(delta.size, tau), edge * (1 + delta)) - at.X for delta in distances]
-    return Feet(float(both.lambda_.value), mu, tuple(tuple(row.tolist()) for row in rows))

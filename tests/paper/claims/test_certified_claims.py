@@ -200,6 +200,21 @@ MUTANTS = {
         "displaced = sum(value * s ** (n + 2) / ((n + 1) * (n + 2))",
         "displaced = sum(value * s ** (n + 2) / (n + 2)",
         "s6-lips s6-sections s6n-C s6n-corr s6n-corr-A s6n-cusp s6n-maps s6n-AB s6p-regions"),
+    "another order of flights": (
+        "paper/claims/sections/section6_loops.py",
+        "3 * place * (later - t)",
+        "3 * place * (later + t)",
+        "s6p-separates s6n-tangent s6n-transverse s6n-loops s6n-accumulate s7-loops s6n-Y"),
+    "grazing flights beside their conic": (
+        "paper/claims/sections/section6_loops.py",
+        "(6 - 3 * m**2)",
+        "(6 - 2 * m**2)",
+        "s6n-transverse s6n-loops s6n-Y"),
+    "a flight from rest that lands elsewhere": (
+        "paper/claims/sections/section6.py",
+        "model.zero_set().subs(t, 1 - sigma)",
+        "model.zero_set().subs(t, 3 - sigma)",
+        "s6p-gamma"),
     "flights from rest without their factor": (
         "paper/claims/sections/section6_regions.py",
         "value * s ** (n + 1) / (n + 1) for",

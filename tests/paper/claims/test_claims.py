@@ -5,7 +5,6 @@ import re
 import subprocess
 import sys
 from dataclasses import replace
-from fractions import Fraction
 
 import pytest
 from false_certificates import definite
@@ -17,7 +16,6 @@ from singimpact.paper import (
     CLAIMS,
     IN_MODEL,
     MODULO,
-    Bracket,
     Check,
     Claim,
     Statement,
@@ -32,7 +30,7 @@ from singimpact.paper import (
     select,
     watched,
 )
-from singimpact.paper.claims.sections import section6, section6_regions
+from singimpact.paper.claims.sections import section6_regions
 from singimpact.paper.routes import unfolding
 from singimpact.progress import ProgressLine
 
@@ -217,9 +215,10 @@ def test_the_mirror_image_of_E_is_rejected(name, monkeypatch):
     assert not CLAIMS[name].verify(CLAIMS[name].printed.value).holds
 
 
-@pytest.mark.parametrize("found", [None, Bracket(Fraction(7, 10), Fraction(4, 5), 9)])
-def test_an_end_of_gamma_that_is_not_enclosed_in_EA_is_rejected(monkeypatch, found):
-    monkeypatch.setattr(section6, "bracket", lambda _: found)  # no bracket, or one behind E'
+def test_a_flight_from_E_that_lands_before_B_is_rejected(monkeypatch):
+    """The conic of flights from rest, moved: the one that lands at B starts to the left of E."""
+    moved = unfolding.zero_set().subs(unfolding.sigma, unfolding.sigma + 1)
+    monkeypatch.setattr(unfolding, "zero_set", lambda: moved)
     assert not CLAIMS["s6p-gamma"].verify(CLAIMS["s6p-gamma"].printed.value).holds
 
 

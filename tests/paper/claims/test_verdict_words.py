@@ -239,5 +239,5 @@ def test_an_integrator_that_fails_makes_no_theorem_wrong(monkeypatch):
             assert check.holds
             apart += "a trial apart from the argument FAILS: ArithmeticError: no flight today" in check.evidence
     assert apart >= 15
-    assert "s6n-tangent" in {claim.id for claim in stopped}
+    assert "s3-takens" in {claim.id for claim in stopped}
     assert not [claim.id for claim in stopped if _checked(claim).kind in (PROVED, MODULO)]

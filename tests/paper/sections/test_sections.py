@@ -170,7 +170,7 @@ def test_the_notation_alone(singimpact):
     assert singimpact("derive", "notation").stdout == as_latex([NOTATION], {})
 
 
-@pytest.mark.parametrize(("name", "nearest"), [("tangncy", "tangency"), ("section7", "section")])
+@pytest.mark.parametrize(("name", "nearest"), [("tangncy", "tangency"), ("section9", "section")])
 def test_unknown_section(singimpact, name, nearest):
     result = singimpact("derive", name)
     assert result.exit_code == 2

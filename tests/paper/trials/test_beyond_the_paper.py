@@ -10,7 +10,7 @@ import pytest
 
 import singimpact as si
 from singimpact.paper import MODELS, STARTS, SWANS, beside, clearance, generations, heights, inner_start, measured
-from singimpact.paper.trials import universal_foot
+from singimpact.paper.trials import loop_heights, universal_foot
 
 
 @pytest.mark.slow
@@ -89,6 +89,37 @@ def test_heights_on_true_orbits_agree_with_the_known_ones():
     limits = [*generations(0.5, 0.5), *generations(inner_start(0.5), 0.5)]
     slopes = (np.array(found.found[0]) - limits) / found.lines[0]
     assert np.allclose(slopes[[0, 1, 4, 5]], [0.1191, 0.0843, 0.1378, 0.0805], atol=1e-4)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rate", loop_heights.RATES)
+@pytest.mark.parametrize("swan", SWANS, ids=[swan.name for swan in SWANS])
+def test_heights_on_true_orbits_differ_from_those_of_the_limit_to_first_order(swan, rate):
+    r = float(Fraction(rate))
+    found = heights(swan, rate)
+    assert found.left < 1e-12
+    errors = np.array(found.found) - [*generations(0.5, r), *generations(inner_start(r), r)]
+    orders = np.log(np.abs(errors[0] / errors[1])) / log(found.lines[0] / found.lines[1])
+    assert np.all(np.abs(orders - 1) < 0.1)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rate", loop_heights.RATES)
+@pytest.mark.parametrize("swan", SWANS, ids=[swan.name for swan in SWANS])
+def test_feet_beside_gamma_shrink_by_the_square_of_lambda(swan, rate):
+    """Foot - X where ln delta/ln mu takes four phases in three successive periods, over one line above gamma."""
+    at, both = loop_heights._setting(swan, rate), si.fixed_points.tangency(rate)
+    tau, mu = at.A - 0.05 * (at.B - at.A) / 2, float(both.mu.value)
+    edge = float(si.threshold(at.osc, tau).v)
+    distances = [1e-3 * mu ** -(period + np.array([0.0, 0.25, 0.5, 0.75])) for period in range(3)]
+    rows = np.array(
+        [loop_heights._feet(at.osc, at.B, np.full(4, tau), edge * (1 + delta)) - at.X for delta in distances]
+    )
+    off = np.abs(rows[1:] / rows[:-1] / float(both.lambda_.value) ** 2 - 1)
+    assert np.all(off < 0.02)
+    assert np.all(off[1] < off[0])
+    assert (rows[0] > 0).any()
+    assert (rows[0] < 0).any()
 
 
 @pytest.mark.parametrize("depth", [4, 5, 6])

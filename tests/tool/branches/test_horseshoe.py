@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from fractions import Fraction
 from itertools import pairwise
 
 import flint
@@ -146,3 +147,70 @@ def test_beside_a_saddle_of_three_impacts():
     found = si.homoclinic_points(three, length=5)[0].horseshoe()
     assert found.loops[0] == 3
     assert found.loops[1] > 3
+
+
+@pytest.fixture(scope="module")
+def family(crossing):
+    return crossing.horseshoes("restitution", ("0.799", "0.801"))
+
+
+@pytest.mark.slow
+def test_chaos_for_all_restitutions_of_an_interval(family):
+    assert repr(family) == (
+        "<certified horseshoes for all restitution in [0.799, 0.801], pieces: 4, entropy >= 0.137023>"
+    )
+    low = Fraction("0.799")
+    for piece in family.pieces:  # they follow one another
+        assert piece.oscillator.restitution == si.linear("2.8", 0, low + piece.reach).restitution
+        low += 2 * piece.reach
+        x = max(root.real for root in np.roots([1, -1, *[0] * (piece.loops[1] - 2), -1]) if abs(root.imag) < 1e-12)
+        assert float(family.entropy.value) <= np.log(x) + 1e-12
+    assert low == Fraction("0.801")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("share", [-1, -0.4, 0.7, 1])
+def test_flights_of_doubles_cross_the_sets_that_follow_the_number(family, share):
+    """At values of r that no set was made for: the sides land beyond opposite sides, within the next one's height."""
+    piece = family.pieces[-1]
+    shift = share * float(piece.reach)
+    osc = si.linear("2.8", 0, float(Fraction("0.801") - piece.reach) + shift)
+    centres = [
+        [float(x) + shift * float(rate) for x, rate in zip(one.centre, one.drift, strict=True)] for one in piece.sets
+    ]
+    moved = [replace(one, centre=tuple(map(Fraction, at))) for one, at in zip(piece.sets, centres, strict=True)]
+    home, *way = moved
+    along = np.linspace(-1, 1, 41)
+
+    def landed(states):
+        step = osc.impact_map(*states.T)
+        return np.stack([step.tau, step.v], axis=1)
+
+    for one, other in [(home, home), (home, way[0]), *pairwise(way), (way[-1], home)]:
+        ends = [coordinates(landed(sampled(one, np.full(41, side), along)), other)[:, 0] for side in (-1.0, 1.0)]
+        assert min(np.abs(each).min() for each in ends) > 1
+        assert np.unique(np.sign(ends[0])) == -np.unique(np.sign(ends[1]))
+        for height in (-1.0, 0.0, 1.0):
+            assert np.abs(coordinates(landed(sampled(one, along, np.full(41, height))), other)[:, 1]).max() < 1
+
+
+@pytest.mark.parametrize(
+    ("over", "between", "why"),
+    [
+        ("w", (1, 2), "unknown number of the model 'w'"),
+        ("omega", ("2.79", "2.81"), "a number that the period does not depend on"),
+        ("restitution", ("0.9", "0.8"), "two rational numbers low < high in"),
+        ("restitution", ("0.9", "1.2"), "two rational numbers low < high in"),
+        ("clearance", ("a", 1), "the symbol 'a' has no value"),
+        ("clearance", None, "two rational numbers low < high"),
+    ],
+)
+def test_numbers_and_intervals_that_are_refused(crossing, over, between, why):
+    with pytest.raises(InputError, match=why):
+        crossing.horseshoes(over, between)
+
+
+@pytest.mark.slow
+def test_an_interval_in_which_the_saddle_turns_stable_is_refused(crossing):
+    with pytest.raises(InputError, match="no horseshoes are proved next to"):
+        crossing.horseshoes("restitution", ("0.01", "0.02"))

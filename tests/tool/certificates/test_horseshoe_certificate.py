@@ -185,3 +185,65 @@ def test_two_impacts_of_a_box():
 def test_others_are_accepted(osc):
     three = next(orbit for orbit in osc.periodic(3, 3) if not orbit.stable)
     si.certify(si.homoclinic_points(three, length=5)[0].horseshoe()).check(60)  # 4 s on one core, on slow ones 10
+
+
+@pytest.fixture(scope="module")
+def of_interval():
+    crossing = si.homoclinic_points(OSC.periodic(1, 1)[0])[0]
+    return si.certify(crossing.horseshoes("restitution", ("0.799", "0.801")))
+
+
+def test_chaos_for_all_restitutions_of_an_interval_is_accepted(of_interval, tmp_path):
+    is_read_back(of_interval, tmp_path / "horseshoes.json")
+    assert repr(of_interval) == (
+        "<certificate of horseshoes for all restitution in [799/1000, 801/1000], entropy >= 0.137022578262>"
+    )
+    assert len(of_interval.content["pieces"]) == 4
+
+
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        ({"between": ["0.799", "0.8"]}, "do not cover the interval"),
+        ({"between": ["0.8", "0.801"]}, "do not follow one another"),
+        ({"entropy": {"value": "0.13703", "radius": "1e-14"}}, "the entropy"),
+        ({"over": "g"}, "."),
+        ({"pieces": []}, "pieces has 0 entries"),
+    ],
+)
+def test_another_statement_of_an_interval_is_refused(change, why, of_interval):
+    refuses({**copied(of_interval.content), **change}, why)
+
+
+@pytest.mark.parametrize("factor", [3, Fraction(1, 2)])
+def test_a_piece_of_another_width_is_refused(factor, of_interval):
+    """Sets that follow the number cross for the piece that is written; wider ones, and gaps, are refused."""
+    content = copied(of_interval.content)
+    piece = content["pieces"][1]
+    piece["reach"] = str(Fraction(piece["reach"]) * factor)
+    refuses(content, "follow")
+
+
+def test_sets_that_stay_where_they_are_do_not_cross(of_interval):
+    content = copied(of_interval.content)
+    for piece in content["pieces"]:
+        for one in piece["sets"]:
+            one["drift"] = ["0", "0"]
+    refuses(content, "not shown")
+
+
+def test_a_number_that_the_period_depends_on_is_refused(of_interval):
+    """With g = cos(w t), 2.8 at the middle, it has no one period for all w."""
+    content = copied(of_interval.content)
+    model = {"f": "x", "g": "cos(w*t)", "clearance": "0", "restitution": "0.8", "parameters": {"w": "2.8"}}
+    piece = {**content["pieces"][1], "number": "2.8", "reach": "0.0001"}
+    refuses({**content, "model": model, "over": "w", "between": ["2.7999", "2.8001"], "pieces": [piece]}, "period")
+
+
+@pytest.mark.parametrize(
+    ("over", "between"), [("clearance", ("-1/8000", "1/8000")), ("amplitude", ("0.9998", "1.0002"))]
+)
+def test_other_numbers_move_the_wall_or_the_forcing(over, between):
+    made = si.certify(si.homoclinic_points(OSC.periodic(1, 1)[0])[0].horseshoes(over, between))
+    made.check()
+    assert f"horseshoes for all {over}" in repr(made)

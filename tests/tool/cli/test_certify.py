@@ -63,6 +63,10 @@ def test_a_chatter_limit_and_a_horseshoe(singimpact, tmp_path):
     assert "--tau and --v" in singimpact("certify", *MODEL, "--chatter").output
     singimpact("certify", *MODEL[:3], "0", *MODEL[4:], "--horseshoe", "1", "1", "-o", shoe)
     assert "certificate of a horseshoe: loops of 1 and 17 impacts" in singimpact("certify", shoe).output
+    singimpact(
+        "certify", *MODEL[:3], "0", *MODEL[4:], "--horseshoe", "1", "1", "--between", "0.8", "0.8004", "-o", shoe
+    )
+    assert "horseshoes for all restitution in [4/5, 2001/2500]" in singimpact("certify", shoe).output
     assert "0 saddles are found" in singimpact("certify", "--omega", "4", "--clearance", "0", "--restitution", "1/2",
                                                "--horseshoe", "1", "2").output  # fmt: skip
 

@@ -4,76 +4,42 @@ Next to A the motion is x'' = a'(A) sigma in the limit.  In units of a'(A) sigma
 the ratio l of landing and launch time w = (1 - l)(2 + l)/6.
 """
 
-from math import log
-from typing import Any
-
-import numpy as np
 import sympy
 
-from singimpact.algebra.certificates import positive_in, positive_on
-from singimpact.algebra.derivations import At, motion, substitution
-from singimpact.inputs import need
+from singimpact.algebra.derivations import At, substitution
 from singimpact.paper.claims.claim import Check, Encoding
-from singimpact.paper.claims.verifiers import Finding, every, is_zero, measured_on, root_of_line, same
-from singimpact.paper.trials.loop_heights import (
-    GENERATIONS,
-    LINES,
-    PHASES,
-    RATES,
-    SWANS,
-    Swan,
-    feet_beside_gamma,
-    generations,
-    heights,
+from singimpact.paper.claims.sections.section3 import NORMALLY_HYPERBOLIC
+from singimpact.paper.claims.sections.section6_exact import persisting
+from singimpact.paper.claims.sections.section6_loops import (
+    AT_A,
+    HALF,
+    TEAR,
+    THIRD,
+    edges_beside_A,
+    ell,
+    excess,
+    falling_heights,
+    height,
+    inner,
+    r,
+    s,
+    v,
+    w,
 )
-from singimpact.theory.multipliers import P, Q, lambda_, launch_velocity
+from singimpact.paper.claims.verifiers import root_of_line, same
+from singimpact.theory.multipliers import P, lambda_
 
-ell, w, r, s, v = sympy.symbols("l w r s v")
 lam, mu = sympy.symbols("lambda mu")
-NEAR, ORDER = 0.02, 0.1  # of a ratio of feet, and of an order over a factor 2
-
-
-def height(ratio: Any) -> Any:
-    """w of the flight from sigma = -1 to -l, in the homogeneous model of order 1."""
-    return sympy.expand(launch_velocity(1, sympy.Integer(-1), -ratio))
-
-
-def excess(place: sympy.Expr, velocity: sympy.Expr) -> Any:
-    """x' at A of the motion through (place, velocity): v - sigma^2/2.  On W^s(X) it is 0 to second order."""
-    time = sympy.Symbol("t")
-    flight = v * time + s * time**2 / 2 + time**3 / 6
-    motion((s, v, time), flight, (sympy.Integer(0), sympy.Integer(1)), {})
-    found = sympy.expand(sympy.diff(flight, time).subs(time, -s))
-    need(is_zero(found - (v - s**2 / 2)), ArithmeticError("x' at A is not v - sigma^2/2"))
-    return found.subs({s: place, v: velocity}, simultaneous=True)
-
-
-def inner() -> Any:
-    """The excess after a landing behind A at -l, l < 0: a polynomial in (l, r), times 6."""
-    landing = sympy.expand(-launch_velocity(1, -ell, sympy.Integer(-1)))  # speed, by the involution
-    return sympy.expand(6 * excess(-ell, r * landing))
-
-
-def preimage() -> Any:
-    """r (landing speed) - w l^2, which vanishes where the image of the height of l is w; times 6, over 1."""
-    landing = sympy.expand(-launch_velocity(1, -ell, sympy.Integer(-1)))
-    return sympy.expand(6 * (r * landing - w * ell**2))
 
 
 def _map(stated: tuple[sympy.Expr, sympy.Expr, sympy.Expr]) -> Check:
     """(height on W^s(X) above the tear, height of the tear, polynomial in (l, r) of the height below it)."""
     outer, tear, polynomial = stated
-    above = root_of_line(excess(sympy.Integer(-1), w), w)
+    above, graze, below = edges_beside_A()
     turn = root_of_line(sympy.diff(height(ell), ell), ell)
-    graze = height(ell).subs(ell, turn)
     passed, landed = excess(sympy.Integer(-1), graze), excess(-turn, sympy.Integer(0))
     substitution(At(-6 * height(ell) + w, {ell: lambda_, w: (1 - lambda_) * P(1)}), sympy.Integer(0))
-    low, high = -sympy.Rational(1, 2), sympy.Integer(0)
-    below = inner()
-    step = preimage()
-    ends = step.subs(ell, 0), step.subs(ell, 1)
-    fixed = sympy.cancel(step.subs(w, height(ell)) / (1 - ell))
-    return every(
+    return persisting(
         [
             (f"an orbit that passes A has the excess 0 there at w = {above}: stated {outer}", above == outer),
             (f"the tear is at w = {graze}, where l = {turn}: stated {tear}", same(graze, tear)),
@@ -81,85 +47,49 @@ def _map(stated: tuple[sympy.Expr, sympy.Expr, sympy.Expr]) -> Check:
                 f"flights that pass the graze and those that hit have the same excess {passed} at A",
                 same(passed, landed),
             ),
-            (f"a flight that hits behind A has the excess 0 where {below} = 0", same(below, polynomial)),
-            (
-                "with one l in (-1/2, 0) for each r, so w lies between 1/3 and 3/8",
-                _changes_sign(below, low, high) and same(height(0), sympy.Rational(1, 3)),
-            ),
-            (
-                f"w has one inverse image, {step} = 0 with 0 < l < 1, below 1/3, which rises with w",
-                ends[0] == r and positive_on(-ends[1], w, 0, sympy.oo) and _falls(),
-            ),
-            (
-                "the one height that is its own inverse image is that of gamma",
-                same(fixed, r * Q(1).subs(lambda_, ell) - ell**2 * P(1).subs(lambda_, ell)),
-            ),
+            (f"a flight that hits behind A has the excess 0 where {inner()} = 0", same(inner(), polynomial)),
+            ("with one l in (-1/2, 0) for each r, so w lies between 1/3 and 3/8", below),
+            *falling_heights(),
         ],
-        witness=lambda: {"above": str(above), "tear": str(graze), "below": f"{below} = 0"},
-    )
-
-
-def _changes_sign(polynomial: sympy.Expr, low: sympy.Expr, high: sympy.Expr) -> bool:
-    """Whether a quadratic in l is negative at low and positive at high for every r in (0, 1): one root between."""
-    first, last = polynomial.subs(ell, low), polynomial.subs(ell, high)
-    opens = sympy.Poly(polynomial, ell).LC()
-    return positive_on(-first, r, 0, 1) and positive_on(last, r, 0, 1) and positive_on(-opens, r, 0, 1)
-
-
-def _falls() -> bool:
-    """Whether the height falls as l rises through (0, 1), and w as a function of l on the inverse images too."""
-    image = sympy.cancel(preimage().subs(w, 0) / (6 * ell**2))  # w of the image of the height of l
-    return positive_on(-sympy.diff(height(ell), ell), ell, 0, 1) and positive_in(
-        -sympy.diff(image, ell), {ell: (0, 1), r: (0, 1)}
+        [AT_A, ("the distance of the tear from 1/3", graze - THIRD)],
+        witness=lambda: {"above": str(above), "tear": str(graze), "below": f"{inner()} = 0"},
+        modulo=(NORMALLY_HYPERBOLIC,),
     )
 
 
 def _crossings(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
-    """(outer start, polynomial of the inner one): heights on true orbits differ from the stated ones by O(h)."""
-
-    def order(swan: Swan, rate: str) -> Finding:
-        loops, ratio = heights(swan, rate), float(sympy.Rational(rate))
-        predicted = np.array([height for start in _starts(stated, rate) for height in generations(start, ratio)])
-        errors = np.array(loops.found) - predicted
-        orders = np.log(np.abs(errors[0] / errors[1])) / log(LINES[0] / LINES[1])
-        holds = bool(np.all(np.abs(orders - 1) < ORDER)) and loops.left < 1e-12
-        numbers = {"model": swan.name, "r": rate, "w": _numbers(loops.found[1]), "stated": _numbers(predicted)}
-        return f"{orders.min():.3f} to {orders.max():.3f} at r = {rate}", holds, numbers
-
-    return measured_on(
-        SWANS, RATES, order, lambda swan, words: f"{swan.name}: {2 * GENERATIONS} crossings, orders {words}"
+    """(outer start, polynomial of the inner one) of heights in the limit; others are inverse images, smooth in h."""
+    outer, polynomial = stated
+    above, _, below = edges_beside_A()
+    return persisting(
+        [
+            (f"of the first loop w is {above} or in (1/3, 3/8): stated {outer}", above == outer and below),
+            (f"there {inner()} = 0", same(inner(), polynomial)),
+            *falling_heights(),
+        ],
+        [AT_A, ("the slope by w of x' at A", sympy.diff(excess(sympy.Integer(-1), w), w))],
+        modulo=(NORMALLY_HYPERBOLIC,),
     )
 
 
-def _starts(stated: tuple[sympy.Expr, sympy.Expr], rate: str) -> list[float]:
-    """The heights of the first generation for a value of r."""
-    outer, polynomial = stated
-    roots = sympy.Poly(polynomial.subs(r, sympy.Rational(rate)), ell).nroots()
-    (ratio,) = [float(root) for root in roots if root.is_real and -1 < root < 0]
-    return [float(outer), (1 - ratio) * (2 + ratio) / 6]
-
-
-def _numbers(values: Any) -> str:
-    return ", ".join(f"{value:.6f}" for value in values)
-
-
 def _law(stated: sympy.Expr) -> Check:
-    """By which factor, in lambda and mu, foot - X changes where delta is divided by mu, in the limit."""
+    """By which factor, in lambda and mu, foot - X changes where delta is divided by mu, in the limit.
 
-    def ratio(swan: Swan, rate: str) -> Finding:
-        feet = feet_beside_gamma(swan, rate)
-        wanted = float(sympy.sympify(stated).subs({lam: feet.lambda_, mu: feet.mu}))
-        rows = np.array(feet.offsets)
-        ratios = rows[1:] / rows[:-1]
-        off = np.abs(ratios / wanted - 1)
-        holds = bool(np.all(off < NEAR) and np.all(off[1] < off[0]) and (rows[0] > 0).any() and (rows[0] < 0).any())
-        numbers = {"model": swan.name, "r": rate, "found": _numbers(ratios[-1]), "stated": f"{wanted:.6f}"}
-        return f"{ratios[-1].min():.5f} to {ratios[-1].max():.5f} at r = {rate}", holds, numbers
+    In coordinates next to gamma in which G is (h, delta) -> (lambda h, mu delta), (K - X)(h, delta/mu) is
+    (K - X)(lambda h, delta), and to leading order K - X is the excess at A times a number.
+    """
+    near = excess(s, v)
+    shrunk = sympy.cancel(excess(lam * s, lam**2 * v) / near)
+    return persisting(
+        [
+            (f"x' at A is {near} and changes by {shrunk} with s and v by lambda and lambda^2", same(shrunk, stated)),
+            *falling_heights(),
+        ],
+        [AT_A],
+        modulo=("Hartman's theorem in the plane", NORMALLY_HYPERBOLIC),
+    )
 
-    return measured_on(SWANS, RATES, ratio, lambda swan, words: f"{swan.name}: ratios at {len(PHASES)} phases {words}")
 
-
-HALF, TEAR = sympy.Rational(1, 2), sympy.Rational(3, 8)
 INNER = r * (1 + ell - 2 * ell**2) - 3 * ell**2
 
 CLAIMS = {

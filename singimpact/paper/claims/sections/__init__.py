@@ -18,5 +18,6 @@ FILES = (
     "section5",
     "section6",
     "section6_regions",
+    "section6_loops",
 )
 SECTIONS = {file: names_of(__name__, {file: "CLAIMS TRIALS"}) for file in FILES}

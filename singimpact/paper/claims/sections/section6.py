@@ -6,17 +6,19 @@ from typing import Any
 
 import sympy
 
-from singimpact.algebra.certificates import definite, positive_on
+from singimpact.algebra.certificates import definite, negative_on, positive_on
 from singimpact.algebra.derivations import At, substitution
 from singimpact.contact.points import tangency_points
 from singimpact.contact.swans import swan_points_over_clearance
 from singimpact.impact_oscillator import linear
 from singimpact.oscillator.model import Oscillator
 from singimpact.paper.claims.claim import Check, Encoding, Trial, Trials, at_each
+from singimpact.paper.claims.sections.section4_orbits import STABLE
 from singimpact.paper.claims.sections.section6_exact import (
     at,
     crossing,
     epsilon_check,
+    nonzero,
     persisting,
     regular_conic,
     scaling_check,
@@ -26,11 +28,9 @@ from singimpact.paper.routes import unfolding as model
 from singimpact.paper.routes.implicit import v_c_swan
 from singimpact.paper.routes.unfolding import WEIGHTS, Weights, kappa, sigma, t
 from singimpact.paper.trials import true_orbits
-from singimpact.paper.trials.enclosed_swan import LAST, bracket
 from singimpact.paper.trials.true_sheet import Place, swans
 
 SQRT3 = sympy.sqrt(3)
-RATES = ("1/10", "1/2", "7/10", "9/10")  # of restitution, at which the end of gamma is enclosed
 
 
 def _birth(stated: int) -> Check:
@@ -231,7 +231,7 @@ def _slopes_of_reset(stated: tuple[sympy.Expr, sympy.Expr, int]) -> Check:
     )
 
 
-def _common_points() -> list[tuple[Any, Any]]:
+def _common_points() -> list[tuple[sympy.Expr, sympy.Expr]]:
     """The points where Z and H meet, by the factors of their difference, each of which is linear."""
     found = []
     for factor, _ in sympy.factor_list(model.horizon() - model.zero_set(), t)[1]:
@@ -241,42 +241,37 @@ def _common_points() -> list[tuple[Any, Any]]:
     return sorted(found)
 
 
-def _gamma(stated: tuple[tuple[str, ...], tuple[Any, Any]]) -> Check:
-    """For the values of r: where gamma meets Pi_0 again, and at what slope.
+def _gamma(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
+    """(low, high) of an interval in which gamma meets Pi_0 again; and at what slope, for every r.
 
-    Below gamma chatter is complete before B, above it orbits pass B.  Flights of the same orbit land alike: along
-    (1, -1) in (sigma, t) the landing stays where it is when v = 0, and v changes by a, which is the slope of gamma.
+    Next to A, where a' < 0, chatter completes before B (t:foliate); where the first flight lands at B or later the orbit
+    leaves.  Both sets of points at rest are open, and what is between tends to B.  Flights of the same orbit land alike:
+    along (1, -1) in (sigma, t) the landing stays where it is when v = 0, and v changes by a, which is the slope of gamma.
     """
-    rates, (low, high) = stated
-    brackets = {rate: bracket(rate) for rate in rates}
-    places = {rate: (-1 - at.high, -1 - at.low) for rate, at in brackets.items() if at is not None}
-    inside = [sympy.Rational(left) > low and sympy.Rational(right) < high for left, right in places.values()]
-    shown = ", ".join(
-        f"({float(left):.5f}, {float(right):.5f}) at r = {rate}" for rate, (left, right) in places.items()
-    )
+    low, high = stated
     landing, launch = model.impact_velocity(), model.launch_velocity()
     push = sympy.cancel(model.acceleration() / kappa)
-    turns = [
-        sympy.expand(sympy.diff(expression, sigma) - sympy.diff(expression, t)) for expression in (landing, launch)
-    ]
-    conic = sympy.Poly(model.zero_set(), sigma)
-    left_over = [
-        sympy.rem(sympy.Poly(expression, sigma), conic).as_expr()
-        for expression in (turns[0], turns[1] - model.acceleration())
-    ]
-    first = sympy.Poly(model.zero_set().subs(t, 1 - sigma), sigma).real_roots()  # from rest there a flight lands at B
-    return every(
+    conic, force = sympy.Poly(model.zero_set(), sigma), model.acceleration()
+    turns = [sympy.expand(sympy.diff(speed, sigma) - sympy.diff(speed, t)) for speed in (landing, launch)]
+    left_over = [sympy.rem(sympy.Poly(turn, sigma), conic).as_expr() for turn in (turns[0], turns[1] - force)]
+    first = min(
+        sympy.Poly(model.zero_set().subs(t, 1 - sigma), sigma).real_roots()
+    )  # whose flight from rest lands at B
+    near_A = model.slope_of_acceleration(-1)
+    return persisting(
         [
-            (
-                f"proved in balls from rest: to the right of {shown} chatter is complete before B, to the left orbits pass B; "
-                "between, that gamma has one point there is not decided",
-                len(places) == len(rates) > 0 and all(inside),
-            ),
-            (f"from sigma <= {min(first)} the first flight lands at B or later", min(first) == -1 - LAST),
+            (f"from sigma = {first} the flight from rest lands at B, {low} < {first}", bool(low < first < high)),
+            (f"next to A a' = {near_A}: chatter completes; stated {high}", high == -1 and nonzero(near_A)),
+            ("with kappa > 0 it is negative", negative_on(near_A, kappa, 0, sympy.oo)),
             ("along (1, -1) x' at the landing is stationary on Z, and v has the slope a", all(map(is_zero, left_over))),
             ("a > 0 for sigma < -1: transverse", positive_on(push, sigma, -sympy.oo, -1)),
         ],
-        kind="certified",
+        [
+            ("x' where it lands at B", model.value_at_point(landing, (first, 1 - first))),
+            ("a'(A)", near_A),
+            ("a'(B)", model.slope_of_acceleration(1)),
+        ],
+        modulo=(STABLE,),
     )
 
 
@@ -351,13 +346,13 @@ CLAIMS = {
     ),
     "s6p-eps": Encoding(1, epsilon_check, (0, 2)),
     "s6p-gamma": Encoding(
-        (RATES, (-SQRT3, sympy.Integer(-1))),
+        (-SQRT3, sympy.Integer(-1)),
         _gamma,
         (
-            (RATES, (sympy.Integer(-1), sympy.Integer(1))),
-            (RATES, (sympy.Integer(-3), -SQRT3)),
-            (RATES, (-SQRT3, sympy.Rational(-13, 10))),
-            ((), (-SQRT3, sympy.Integer(-1))),
+            (sympy.Integer(-1), sympy.Integer(1)),
+            (sympy.Integer(-3), -SQRT3),
+            (-SQRT3, -sympy.Rational(13, 10)),
+            (-sympy.Rational(8, 5), sympy.Integer(-1)),
         ),
     ),
 }

@@ -46,15 +46,18 @@ def near_the_swan(check: Check, conditions: Named) -> Check:
 
 
 def persisting(
-    checks: Sequence[tuple[str, bool]], conditions: Named, witness: Callable[[], dict[str, str]] | None = None
+    checks: Sequence[tuple[str, bool]],
+    conditions: Named,
+    witness: Callable[[], dict[str, str]] | None = None,
+    modulo: tuple[str, ...] = (),
 ) -> Check:
     """One check in the model from several named ones, with the conditions by which its statement persists.
 
     Parameters
     ----------
-    checks, witness : as of `every`. conditions : as of `near_the_swan`.
+    checks, witness, modulo : as of `every`. conditions : as of `near_the_swan`.
     """
-    return near_the_swan(every(checks, witness=witness), conditions)
+    return near_the_swan(every(checks, witness=witness, modulo=modulo), conditions)
 
 
 def nonzero(value: sympy.Expr) -> bool:
@@ -137,7 +140,7 @@ ADCBA = (  # AD on the horizon, DC on the shadow, CB on the zero set; BA lies on
 )
 
 
-def ends(arc: Arc) -> list[tuple[Any, Any]]:
+def ends(arc: Arc) -> list[tuple[sympy.Expr, sympy.Expr]]:
     """The points at which an arc ends, at its lowest and its highest time; an ellipse closes by itself at infinity."""
     times = [time for time in (arc.low, arc.high) if time.is_finite]
     roots = [(place, time) for time in times for place in sympy.Poly(arc.conic.subs(t, time), sigma).real_roots()]
@@ -229,7 +232,7 @@ def _left_of(point: dict[Any, Any], arc: Arc) -> int:
     return int(line.count_roots(edge, point[sigma])) if edge < point[sigma] else 0
 
 
-def interval_check(stated: tuple[tuple[Any, Any], tuple[Any, Any]]) -> Check:
+def interval_check(stated: tuple[object, object]) -> Check:
     """F takes AB, at rest with a > 0, to the arc of Z with t > 0 that runs from stated[0] to stated[1]; kappa < 0."""
     conic = model.zero_set()
     product, total = (sympy.Poly(conic, t).nth(n) for n in (0, 2))

@@ -1,8 +1,7 @@
-"""Sections 6 and 7: the negative swan in its universal model, kappa < 0, visible part, images and loops; what the regions
-of an unfolded swan are bounded by, and where the two maps have cusps beside A and B.
+"""Section 6: the negative swan in its universal model, kappa < 0, visible part and images; what the regions of an
+unfolded swan are bounded by, and where the two maps have cusps beside A and B.
 """
 
-from itertools import pairwise
 from typing import Any
 
 import sympy
@@ -20,15 +19,14 @@ from singimpact.paper.claims.sections.section6_exact import (
     persisting,
     visible_check,
 )
-from singimpact.paper.claims.verifiers import every, is_zero, root_of_line, same
+from singimpact.paper.claims.verifiers import is_zero, root_of_line, same
 from singimpact.paper.routes import unfolding as model
 from singimpact.paper.routes.unfolding import kappa, sigma, t, u
-from singimpact.paper.trials import universal_orbits
-from singimpact.paper.trials.true_orbits import lambda_of
-from singimpact.theory.multipliers import lambda_, mu_of_lambda
 
 
-def _over(conic: sympy.Expr, direction: sympy.Expr, ends: tuple[tuple[Any, Any], tuple[Any, Any]]) -> bool:
+def _over(
+    conic: sympy.Expr, direction: sympy.Expr, ends: tuple[tuple[sympy.Expr, sympy.Expr], tuple[sympy.Expr, sympy.Expr]]
+) -> bool:
     """Whether an arc of a conic between two ends is a graph over `direction`, a linear form that no point of it turns at.
 
     The arc is the one with times between those of its ends; the points of the conic where the form is stationary along
@@ -159,76 +157,6 @@ REGIONS = {
 }
 
 
-# Section 6: stable manifolds of an unfolded swan, on true orbits of its universal model.
-
-RATES = ("1/10", "1/2", "9/10")
-
-
-def _separated(stated: tuple[bool, bool]) -> Check:
-    """Whether chatter is complete before B, and so on AB, below gamma, and above it; otherwise orbits leave S'."""
-    parts = []
-    for rate in RATES:
-        lines = universal_orbits.fates(rate)
-        changes = {line: sum(one != other for one, other in pairwise(feet)) for line, feet in lines.items()}
-        below = [feet[0] for line, feet in lines.items() if changes[line]]
-        above = [feet[-1] for line, feet in lines.items() if changes[line]]
-        parts.append(
-            (
-                f"r = {rate}: over {len(lines)} lines in S' the end changes {list(changes.values())} times as v rises, "
-                "from chatter that is complete on AB to orbits that pass B",
-                set(changes.values()) == {0, 1} or set(changes.values()) == {1},
-            )
-        )
-        as_stated = bool(below) and set(below) == {stated[0]} and set(above) == {stated[1]}
-        parts.append((f"below it is complete: {set(below)}; above: {set(above)}", as_stated))
-        passing = [feet for line, feet in lines.items() if not changes[line]]
-        parts.append(("a line without a change is left of gamma: all of it leaves", not any(map(any, passing))))
-    return every(parts, kind="supported")
-
-
-def _crossed(stated: int) -> Check:
-    """The sign of the derivative, along R(D''C'') from C'' to B, of the phase at which chatter ends."""
-    feet = {rate: universal_orbits.feet_on_the_landing_arc(rate) for rate in RATES}
-    text = "; ".join(f"{min(rates):.4f} to {max(rates):.4f} for r = {rate}" for rate, rates in feet.items())
-    return every(
-        [
-            (
-                f"per length of the arc the end of chatter changes by {text}: no stable manifold touches it",
-                all(rate * stated > 0 for rates in feet.values() for rate in rates),
-            )
-        ],
-        kind="supported",
-    )
-
-
-def _beyond(stated: tuple[int, int]) -> Check:
-    """The sign of the excess of feet over X at discontinuities, and crossings gained by each that comes into reach."""
-    counts = universal_orbits.beyond()
-    sign, gain = stated
-    return every(
-        [
-            (
-                f"next to delta and its first inverse images, on both sides, orbits rest at {max(map(max, counts.tears)):.2g} "
-                "from X at most: W^s(Y), Y > X, meets none of them",
-                all(side * sign > 0 for sides in counts.tears for side in sides),
-            ),
-            (
-                f"W^s(Y) for Y - X = {counts.excess} crosses the line sigma = -1.02 {counts.crossings} times: once up and "
-                "down between two more of them each time",
-                counts.crossings == tuple(gain * count for count in range(len(counts.crossings))),
-            ),
-        ],
-        kind="supported",
-    )
-
-
-LEAVES = {
-    "s6p-separates": Encoding((True, False), _separated, ((False, True), (True, True))),
-    "s6n-transverse": Encoding(-1, _crossed, (1, 0)),
-    "s6n-Y": Encoding((-1, 2), _beyond, ((1, 2), (-1, 1), (-1, 3))),
-}
-
-
 def cusp_above(point: tuple[sympy.Expr, sympy.Expr], tangency: tuple[sympy.Expr, sympy.Expr], name: str) -> Check:
     """Whether a point is a cusp point of p that phi takes to a tangency point."""
     conditions = model.cusp_conditions(point)
@@ -257,7 +185,7 @@ def _lands_at_rest() -> bool:
     return same(t * slope, -landing) and same(t * bend, -pressed - 2 * slope)
 
 
-def _images(stated: tuple[tuple[Any, Any], tuple[Any, Any]]) -> Check:
+def _images(stated: tuple[tuple[sympy.Expr, sympy.Expr], tuple[sympy.Expr, sympy.Expr]]) -> Check:
     """phi(DA) on Pi_0 between stated[0], and the end stated[1] of phi(DC)."""
     ends = tuple(model.reset(point)[0] for point in (model.A, model.D))
     on_axis = is_zero(sympy.rem(sympy.Poly(model.impact_velocity(), t), sympy.Poly(model.horizon(), t)).as_expr())
@@ -288,7 +216,7 @@ def _images(stated: tuple[tuple[Any, Any], tuple[Any, Any]]) -> Check:
     )
 
 
-def _turning_points() -> list[tuple[Any, Any]]:
+def _turning_points() -> list[tuple[sympy.Expr, sympy.Expr]]:
     """The points of H at which sigma + t is stationary along it: v of H's tangent, (H_t, -H_sigma), has sum 0."""
     conic = model.horizon()
     line = root_of_line(sympy.diff(conic, t) - sympy.diff(conic, sigma), t)
@@ -323,7 +251,7 @@ def _shadow_velocity(sign: int) -> Check:
     )
 
 
-def _cusp(stated: tuple[Any, Any]) -> Check:
+def _cusp(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
     """C'' = phi(C). It is a cusp of P: p of the mirror image of D."""
     mirror = (-model.D[0], -model.D[1])
     conditions = model.cusp_conditions(mirror)
@@ -337,68 +265,6 @@ def _cusp(stated: tuple[Any, Any]) -> Check:
             ("where v_t = v_tt = 0 a flight lands at rest at a zero of a", _lands_at_rest()),
         ],
         [("v_ttt v_(sigma t) there", conditions[2] * conditions[3]), ("a'(A)", model.slope_of_acceleration(-1))],
-    )
-
-
-def _tangent(order: int) -> Check:
-    """v/(sigma + 1)^order tends to a finite limit, not 0, on W^s(X) on both sides of A."""
-    left, right = universal_orbits.tangency_at_A()
-    return every(
-        [
-            (
-                f"on W^s(X) v/(sigma + 1)^2 -> {left:.4f} and {right:.4f} on the two sides of A (a'(A)/2 = 12): tangent to Pi_0",
-                abs(left - 12) < 0.1 and abs(right - 12) < 0.1 and order == 2,
-            )
-        ],
-        kind="supported",
-    )
-
-
-def _loop(stated: int) -> Check:
-    """Branches of W^s(X) over lines that meet delta: one above it and one just below, joined to the left of D'."""
-    loops = universal_orbits.loops()
-    return every(
-        [
-            (
-                f"W^s(X) crosses the lines sigma = -1.05, -1.8, -2.7 (above, just below delta) {loops.around} times, and -4.5, -5 {loops.beyond} times: two branches, which join to the left of D'; nearer to A than 0.05 no line was tried",
-                all(sum(pair) == stated for pair in loops.around) and loops.beyond == (stated, 0),
-            )
-        ],
-        kind="supported",
-    )
-
-
-def _accumulation(factor: str) -> Check:
-    """Heights v/h^2 of G^-n(delta) over sigma = -1 - h against gamma's; distances shrink by 1/mu."""
-    preimages = universal_orbits.preimages()
-    expected = 1 / float(mu_of_lambda(1).subs(lambda_, lambda_of(0.5, 1)))
-    shown, twice = (", ".join(f"{v:.4f}" for v in heights[:5]) for heights in (preimages.heights, preimages.farther))
-    return every(
-        [
-            (
-                f"v/h^2 on the line sigma = -1 - h, h = 0.001, is {shown}, ... and falls to gamma's {preimages.gamma:.4f}; last factor {preimages.factor:.3f}, 1/mu = {expected:.3f}",
-                abs(preimages.factor - expected) < 0.02 and factor == "1/mu",
-            ),
-            (
-                f"at h = 0.002 the first two are {twice}: v is of order h^2 on them",
-                all(abs(two / one - 1) < 0.02 for one, two in zip(preimages.heights, preimages.farther, strict=False)),
-            ),
-        ],
-        kind="supported",
-    )
-
-
-def _infinitely(count: int) -> Check:
-    """Crossings of W^s(X) between successive inverse images of delta: a loop in each interval."""
-    loops = universal_orbits.loops()
-    return every(
-        [
-            (
-                f"read for the manifold through A (just after tau_* a > 0 and no point rests): W^s(X), X beyond tau_2, meets sigma = -1.02 {loops.between} times in successive intervals between inverse images of delta",
-                all(number >= count for number in loops.between) and count == 2,
-            )
-        ],
-        kind="supported",
     )
 
 
@@ -416,10 +282,6 @@ NEGATIVE = {
     "s6n-cusp": Encoding((3, 64 * kappa), _cusp, ((3, -64 * kappa),)),
     "s6n-AB": Encoding(((-1, 4), (1, 0)), interval_check, (((-1, 3), (1, 0)), ((-1, 4), (1, 1)))),
     "s6n-X": Encoding(1, chatter_check, (4, sympy.Rational(16, 5))),
-    "s6n-tangent": Encoding(2, _tangent, (1,)),
-    "s6n-loops": Encoding(2, _loop, (1,)),
-    "s6n-accumulate": Encoding("1/mu", _accumulation, ("1/lambda",)),
-    "s7-loops": Encoding(2, _infinitely, (3,)),
 }
 
-CLAIMS = NEGATIVE | REGIONS | LEAVES
+CLAIMS = NEGATIVE | REGIONS

@@ -100,6 +100,9 @@ EXAMPLES = {
         .certified_gamma(tau=2, reach="1/8"), 0,
     ),
     "horseshoe": (lambda _: si.homoclinic_points(LINEAR.periodic(1, 1)[0])[0].horseshoe(), 0),
+    "horseshoes": (
+        lambda _: si.homoclinic_points(LINEAR.periodic(1, 1)[0])[0].horseshoes("restitution", ("0.8", "0.8004")), 0,
+    ),
     "border": (_border, 14),
     "border_by_stiffness": (_border_by_stiffness, 12),
     "fold": (lambda digits: _linear_event("fold", digits), 8),

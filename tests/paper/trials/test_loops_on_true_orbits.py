@@ -1,4 +1,4 @@
-"""Orbits of the universal unfolded swan: stable manifolds, their loops, and what gamma separates."""
+"""Orbits of the universal unfolded swan: what is proved of stable manifolds, their loops and gamma holds on them."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -6,39 +6,39 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
+import pytest
 import sympy
 from scipy.optimize import brentq
 
-from singimpact.algebra.solving import halved
-from singimpact.impact_oscillator import ImpactOscillator, universal
-from singimpact.paper.trials import true_orbits
+from singimpact.impact_oscillator import universal
+from singimpact.paper.trials import first_order_feet, true_orbits
 from singimpact.status import Status
+from singimpact.theory import lambda_, mu_of_lambda
 
 TEAR = 1e-6  # relative distance from a discontinuity at which its sides are looked at
 
 
-def negative(r: str) -> ImpactOscillator:
-    """x'' = -12 (t^2 - 1): kappa = -1."""
-    return universal(-1, r)
-
-
-@lru_cache(maxsize=8)
-def foot(r: str, sigma: float = -1.0, v: float = 0.0) -> float:
-    """Where chatter from (sigma, v) comes to rest in the negative swan; for A itself this is X."""
-    return float(true_orbits.resting_times(negative(r), [sigma], [v], 2000, 1e-14)[0])
+def halved(stays, low, high, width):
+    """Neighbours (low, high) where `stays` ends to hold, as near as `width` of them allows."""
+    while high - low > width * abs(high):
+        middle = (low + high) / 2
+        if not low < middle < high:
+            break
+        low, high = (middle, high) if stays(middle) else (low, middle)
+    return low, high
 
 
 @lru_cache(maxsize=1)
 def tangency_at_A() -> tuple[float, float]:
     """v/(sigma + 1)^2 on the stable manifold through A, to the left and to the right of A, extrapolated; r = 1/2."""
-    goal = foot("1/2")
+    goal = first_order_feet.foot("1/2")
     sides = []
     for side in (-1, 1):
         ratios = []
         for h in (0.02, 0.01):
 
             def miss(ratio: float, place: float = -1 + side * h, unit: float = h * h) -> float:
-                return foot("1/2", place, ratio * unit) - goal
+                return first_order_feet.foot("1/2", place, ratio * unit) - goal
 
             ratios.append(brentq(miss, 10.5, 13.5, xtol=1e-9))
         sides.append(2 * ratios[1] - ratios[0])
@@ -87,7 +87,7 @@ def _jump(h: float, count: int, low: float, high: float) -> tuple[float, float]:
 
 def _impacts_before_leaving(sigma: float, v: float, most: int = 60) -> int:
     """The number of short flights of an orbit near A before one that takes longer than 1."""
-    osc, tau, speed = negative("1/2"), sigma, v
+    osc, tau, speed = first_order_feet.negative("1/2"), sigma, v
     for count in range(most):
         step = osc.impact_map(tau, speed)
         if float(step.flight_time) > 1:
@@ -165,7 +165,7 @@ def _edge(sigma: float, count: int) -> tuple[float, float]:
 @lru_cache(maxsize=4)
 def feet_on_the_landing_arc(r: str) -> tuple[float, ...]:
     """dK/ds along R(D''C''), s its length and K the foot: from C'' to B, at 59 places, the last 1e-4 from B in t."""
-    osc, rate = negative(r), float(sympy.Rational(r))
+    osc, rate = first_order_feet.negative(r), float(sympy.Rational(r))
     grazing = 4 - np.geomspace(4, 1e-4, 60)
     sigma = -(4 * grazing + np.sqrt(36 - 2 * grazing**2)) / 6
     flight = -4 * sigma - 2 * grazing
@@ -203,4 +203,67 @@ def _crossings(sigma: float, low: float, high: float, coarse: int = 76, fine: in
 
 def _off(sigma: float, v: Any) -> Any:
     """foot - X over one phase, r = 1/2; chatter below v = 1e-7 is summed up to 1e-13."""
-    return true_orbits.resting_times(negative("1/2"), np.full_like(v, sigma), v, 120, 1e-7) - foot("1/2")
+    return true_orbits.resting_times(
+        first_order_feet.negative("1/2"), np.full_like(v, sigma), v, 120, 1e-7
+    ) - first_order_feet.foot("1/2")
+
+
+RATES = ("1/10", "1/2", "9/10")
+
+
+def test_crossings_are_counted_and_jumps_are_not(monkeypatch):
+    def off(_sigma, v):
+        return np.where(v < 0.5, np.sin(7 * np.pi * v), 5.0 * np.sign(v - 0.75))
+
+    monkeypatch.setitem(_crossings.__globals__, "_off", off)
+    monkeypatch.setitem(_crossings.__globals__, "_outline", lambda _: 1.0)
+    assert _crossings(-2.0, 0.05, 1.0) == 3
+
+
+@pytest.mark.slow
+def test_the_manifold_through_A_is_tangent_there():
+    left, right = tangency_at_A()
+    assert abs(left - 12) < 0.1
+    assert abs(right - 12) < 0.1
+
+
+@pytest.mark.slow
+def test_a_loop_goes_around_each_inverse_image_of_the_tear():
+    found = loops()
+    assert all(pair == (1, 1) for pair in found.around)
+    assert found.beyond == (2, 0)
+    assert set(found.between) == {2}
+
+
+@pytest.mark.slow
+def test_the_inverse_images_of_the_tear_fall_to_gamma():
+    found = preimages()
+    expected = 1 / float(mu_of_lambda(1).subs(lambda_, true_orbits.lambda_of(0.5, 1)))
+    assert found.factor == pytest.approx(expected, abs=0.02)
+    assert abs(found.factor - true_orbits.lambda_of(0.5, 1)) > 0.1
+    for near, far in zip(found.heights, found.farther, strict=False):
+        assert far == pytest.approx(near, rel=0.02)
+
+
+@pytest.mark.slow
+def test_manifolds_behind_X_meet_no_tear_and_gain_two_crossings_for_each():
+    counts = beyond()
+    assert all(side < 0 for sides in counts.tears for side in sides)
+    assert counts.crossings == tuple(2 * count for count in range(len(counts.crossings)))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rate", RATES)
+def test_the_end_of_chatter_falls_along_the_landing_arc(rate):
+    assert all(change < 0 for change in feet_on_the_landing_arc(rate))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rate", RATES)
+def test_gamma_separates_what_rests_on_AB_from_what_leaves(rate):
+    lines = fates(rate)
+    changes = [sum(one != other for one, other in pairwise(feet)) for feet in lines.values()]
+    assert max(changes) == 1
+    for feet, changed in zip(lines.values(), changes, strict=True):
+        assert not changed or (feet[0], feet[-1]) == (True, False)
+        assert changed or not any(feet)  # left of gamma all of it leaves
