@@ -65,36 +65,14 @@ HOLDERS: dict[type, tuple[str, ...]] = {
     types.MemberDescriptorType: IN_C,
 }
 # Attributes of classes that decide nothing, or that repeat others
-NOT_OF_CLASSES = {
-    "__abstractmethods__",
-    "__annotate__",
-    "__annotate_func__",
-    "__annotations__",
-    "__annotations_cache__",
-    "__dataclass_fields__",
-    "__dataclass_params__",
-    "__dict__",
-    "__doc__",
-    "__firstlineno__",
-    "__module__",
-    "__orig_bases__",
-    "__parameters__",
-    "__slotnames__",
-    "__static_attributes__",
-    "__type_params__",
-    "__weakref__",
-    "_abc_impl",
-}
-NOT_OF_MODULES = {
-    "__annotations__",
-    "__builtins__",
-    "__cached__",
-    "__doc__",
-    "__file__",
-    "__loader__",
-    "__path__",
-    "__spec__",
-}
+_NOT_OF_CLASSES = (
+    "__abstractmethods__ __annotate__ __annotate_func__ __annotations__ __annotations_cache__ "
+    "__dataclass_fields__ __dataclass_params__ __dict__ __doc__ __firstlineno__ __module__ __orig_bases__ "
+    "__parameters__ __slotnames__ __static_attributes__ __type_params__ __weakref__ _abc_impl"
+)
+NOT_OF_CLASSES = set(_NOT_OF_CLASSES.split())
+_NOT_OF_MODULES = "__annotations__ __builtins__ __cached__ __doc__ __file__ __loader__ __path__ __spec__"
+NOT_OF_MODULES = set(_NOT_OF_MODULES.split())
 LOGS = (list, set, dict, deque, bytearray, Counter, OrderedDict, defaultdict)
 # Methods of these that return None: a function that only calls them does not depend on the content
 WRITES = {"append", "appendleft", "add", "extend", "extendleft", "insert", "clear"}

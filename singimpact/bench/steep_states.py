@@ -148,24 +148,11 @@ class DrawSettings:
 
 DRAW = DrawSettings()
 PARAMETRIC_FROM = 10**9  # the number of the first case of the parametric families
-COLUMNS = (
-    "family",
-    "status",
-    "flight_time",
-    "velocity",
-    "condition",
-    "velocity_condition",
-    "error",
-    "velocity_error",
-    "true_status",
-    "true_time",
-    "true_velocity",
-    "crossed",
-    "tau",
-    "v",
-    "case",
-    "launch",
+_COLUMNS = (
+    "family status flight_time velocity condition velocity_condition error velocity_error true_status "
+    "true_time true_velocity crossed tau v case launch"
 )
+COLUMNS = tuple(_COLUMNS.split())
 
 
 class Case(NamedTuple):

@@ -162,7 +162,7 @@ def horseshoe(saddle: PeriodicOrbit, states: Array) -> Horseshoe | str:
     """
     bits = ceil(SETTINGS.digits * BITS_A_DIGIT) + 64
     with balls_at(bits):
-        return proved(lambda: _search(saddle, states, bits))  # type: ignore[no-any-return]
+        return proved(lambda: _crossed(_followed(saddle, states, bits)))  # type: ignore[no-any-return]
 
 
 def horseshoe_family(saddle: PeriodicOrbit, states: Array, over: Any, between: Any) -> HorseshoeFamily | str:
@@ -194,8 +194,7 @@ def _pieces(saddle: PeriodicOrbit, states: Array, over: str, between: Pair, bits
         low, high = todo.pop()
         middle, reach = (low + high) / 2, (high - low) / 2
         try:
-            there = route.at(middle, reach)
-            pieces.append(_crossed(there))
+            pieces.append(_crossed(there := route.at(middle, reach)))
             route = there
         except Refused:
             if reach < least:
@@ -205,15 +204,10 @@ def _pieces(saddle: PeriodicOrbit, states: Array, over: str, between: Pair, bits
     return HorseshoeFamily(over, between, entropy, tuple(pieces), saddle.oscillator)
 
 
-def _followed(saddle: PeriodicOrbit, states: Array, bits: int, over: str = "", reach: Fraction = POINT[0]) -> "_Route":
+def _followed(saddle: PeriodicOrbit, states: Array, bits: int, over: str = "") -> "_Route":
     """The homoclinic orbit from next to the saddle until next to it, as a route for sets."""
     cones = Cones(saddle, SETTINGS.digits, bits)
-    _, states, _ = prolonged(cones, cones, states, SETTINGS.near)
-    return _Route(cones, states, over, reach)
-
-
-def _search(saddle: PeriodicOrbit, states: Array, bits: int) -> Horseshoe:
-    return _crossed(_followed(saddle, states, bits))
+    return _Route(cones, prolonged(cones, cones, states, SETTINGS.near)[1], over, POINT[0])
 
 
 def _crossed(route: "_Route") -> Horseshoe:

@@ -340,7 +340,8 @@ EVENTS = tuple(kind.name for kind in KINDS if kind.is_class)
 )
 @click.option("--between", type=(str, str), metavar="LOW HIGH", help="With gamma or --horseshoe: for all restitutions.")
 @whole_option("--digits", 1, 1000, "Significant digits.", 30)
-@click.option("-o", "--output", metavar="FILE.json", help="The certificate.  [default: standard output]")
+@choice_option("--format", ["json", "coq"], "The certificate, or of linear models a file that coqc proves.", "json")
+@click.option("-o", "--output", metavar="FILE", help="The certificate.  [default: standard output]")
 def certify_command(files: tuple[str, ...], tau: str | None, v: str | None, **options: Any) -> None:
     """Enclose the impact from (tau, v), its chatter limit, a periodic orbit, an event of its branch, a border orbit or
     a horseshoe, and write a certificate; or check FILE.json ...
@@ -349,7 +350,8 @@ def certify_command(files: tuple[str, ...], tau: str | None, v: str | None, **op
     that it exists, is unique, and decides the fate of every launch; standard error says how far it got.
 
     A certificate is accepted by a second program, which imports python-flint alone, reads the model as text and
-    encloses the motion again with its own code.
+    encloses the motion again with its own code. With --format coq the first impact, or an orbit of one impact, is
+    proved in Coq's real numbers instead, from the equation of motion: coqc and coq-interval accept the file.
     """
     from singimpact.certificates.certificate import read_certificate
 
@@ -376,8 +378,13 @@ def certify_command(files: tuple[str, ...], tau: str | None, v: str | None, **op
     if options["output"] is not None:
         require_writable(options["output"])
     certificate = _made(take_model(options), kinds[0] if kinds else "", near, options)
+    text = certificate.text
+    if options["format"] == "coq":
+        from singimpact.documents.coq_flights import coq_flight
+
+        text = coq_flight(certificate.content, repr(certificate)[1:-1])
     certificate.check()
-    emit(certificate.text.rstrip("\n"), options["output"])
+    emit(text.rstrip("\n"), options["output"])
 
 
 def _gamma(files: tuple[str, ...], tau: str | None, options: dict[str, Any]) -> None:

@@ -24,11 +24,11 @@ CALLED = {
     "float": "",
 }
 NAMES = {"inf": "Infinity", "nan": "NaN", "True": "true", "False": "false", "None": "null"}
-WORDS = (
+_RESERVED = (
     "case const default delete do enum export extends function let new null super switch "
     "this throw typeof var void arguments eval static"
 )
-RESERVED = {*WORDS.split()}
+RESERVED = set(_RESERVED.split())
 
 
 def translated(source: str, wanted: Collection[str] | None = None) -> dict[str, str]:

@@ -19,21 +19,12 @@ from singimpact.paper.claims.index import Entry
 from singimpact.store import folder, write_text
 
 ERROR = "error"
-WRITTEN = (  # of a verdict, in the file of its certificates: no seconds, which differ from run to run
-    "id",
-    "verdict",
-    "effective",
-    "modulo",
-    "effective_modulo",
-    "section",
-    "title",
-    "printed",
-    "corrected",
-    "corrected_kind",
-    "rests_on",
-    "in_model",
-    "certificates",
+# of a verdict, in the file of its certificates: no seconds, which differ from run to run
+_WRITTEN = (
+    "id verdict effective modulo effective_modulo section title printed corrected corrected_kind rests_on "
+    "in_model certificates"
 )
+WRITTEN = tuple(_WRITTEN.split())
 CORRECTED = "corrected"
 
 

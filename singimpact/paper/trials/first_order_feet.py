@@ -14,7 +14,7 @@ from singimpact.contact.swans import swan_points_over_clearance
 from singimpact.dynamics.chatter import chatter_limit
 from singimpact.dynamics.orbit import orbit
 from singimpact.dynamics.unfolded_swan import swan_configuration
-from singimpact.impact_oscillator import ImpactOscillator, universal
+from singimpact.impact_oscillator import universal
 from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.paper.trials.true_orbits import System, resting_times
 
@@ -23,18 +23,12 @@ SIZES = (0.004, 0.002)  # half distances H tried, to leading order in c_0 - c
 REST = 1e-7  # in H: an orbit from rest so far behind A has the same foot to its square, and A itself is rounded
 
 
-def negative(r: str) -> ImpactOscillator:
-    """x'' = -12 (t^2 - 1): kappa = -1."""
-    return universal(-1, r)
-
-
 @lru_cache(maxsize=8)
-def foot(r: str, sigma: float = -1.0, v: float = 0.0) -> float:
+def limit_of(r: str, sigma: float = -1.0, v: float = 0.0) -> float:
     """Where chatter from (sigma, v) comes to rest in the negative swan; for A itself this is X."""
-    return float(resting_times(negative(r), [sigma], [v], 2000, 1e-14)[0])
+    return float(resting_times(universal(-1, r), [sigma], [v], 2000, 1e-14)[0])
 
 
-limit_of = foot  # X of the universal negative swan
 Model = System  # without its clearance
 MODELS = (
     Model("x'' + x = cos 2t + sin(3t)/5", "x", "cos(2*t) + 0.2*sin(3*t)"),

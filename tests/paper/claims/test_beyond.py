@@ -32,7 +32,6 @@ KINDS = {
     "b:gamma-nonlinear": "certified",
     "b:first-order": "proved",
     "b:first-order-foot": "proved modulo",
-    "b:first-order-measured": "supported",
     "b:holder-bounds": "proved",
     "b:holder": "supported",
     "b:holder-count": "supported",
@@ -63,7 +62,7 @@ KINDS = {
 OWN = {"proved in the model": "proved"}  # the kind of a verifier whose argument is about the universal model
 
 SECONDS = (  # those of enclosures and of true orbits
-    "b:cascade", "b:homoclinic", "b:horseshoe", "b:first-order-measured", "b:holder", "b:holder-count",
+    "b:cascade", "b:homoclinic", "b:horseshoe", "b:holder", "b:holder-count",
     "b:onset", "b:events-first", "b:events-met", "b:hertz-next", "b:hertz-measured",
     "b:gamma-nonlinear", "b:gamma-swan", "b:cascade-contraction", "b:cascade-contraction-r", "b:ratio-bound",
     "b:order-exponents", "b:first-order-foot",

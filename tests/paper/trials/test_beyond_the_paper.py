@@ -10,7 +10,7 @@ import pytest
 
 import singimpact as si
 from singimpact.paper import MODELS, STARTS, SWANS, beside, clearance, generations, heights, inner_start, measured
-from singimpact.paper.trials import loop_heights, universal_foot
+from singimpact.paper.trials import first_order_feet, loop_heights, universal_foot
 
 
 @pytest.mark.slow
@@ -71,6 +71,22 @@ def test_the_holder_exponent_in_many_digits():
             gaps.append(float(zero - mpmath.mpf(limit.tau)))
     slope = log(gaps[0] / gaps[1]) / (5 * log(float(at.mu.value)))
     assert abs(slope - log(1 / float(at.lambda_.value)) / log(float(at.mu.value))) < 1e-5
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rate", first_order_feet.RATES)
+@pytest.mark.parametrize("model", MODELS, ids=[model.name for model in MODELS])
+def test_feet_of_swans_differ_from_the_universal_ones_to_first_order(model, rate):
+    """By the order 1 in H, and by the order 2 once -chi (X^2 - 1) H/10 is taken off; not with 1/9 for 1/10."""
+    feet = measured(model, rate)
+
+    def order(share):
+        weight = -share * (feet.limit**2 - 1) * feet.chi
+        return feet.order([off - weight * size for size, off in zip(feet.sizes, feet.offsets, strict=True)])
+
+    assert feet.order(feet.offsets) == pytest.approx(1, abs=0.1)
+    assert order(0.1) == pytest.approx(2, abs=0.1)
+    assert abs(order(1 / 9) - 2) > 0.1
 
 
 def test_heights_are_ordered_about_their_tears():

@@ -31,14 +31,14 @@ def halved(stays, low, high, width):
 @lru_cache(maxsize=1)
 def tangency_at_A() -> tuple[float, float]:
     """v/(sigma + 1)^2 on the stable manifold through A, to the left and to the right of A, extrapolated; r = 1/2."""
-    goal = first_order_feet.foot("1/2")
+    goal = first_order_feet.limit_of("1/2")
     sides = []
     for side in (-1, 1):
         ratios = []
         for h in (0.02, 0.01):
 
             def miss(ratio: float, place: float = -1 + side * h, unit: float = h * h) -> float:
-                return first_order_feet.foot("1/2", place, ratio * unit) - goal
+                return first_order_feet.limit_of("1/2", place, ratio * unit) - goal
 
             ratios.append(brentq(miss, 10.5, 13.5, xtol=1e-9))
         sides.append(2 * ratios[1] - ratios[0])
@@ -87,7 +87,7 @@ def _jump(h: float, count: int, low: float, high: float) -> tuple[float, float]:
 
 def _impacts_before_leaving(sigma: float, v: float, most: int = 60) -> int:
     """The number of short flights of an orbit near A before one that takes longer than 1."""
-    osc, tau, speed = first_order_feet.negative("1/2"), sigma, v
+    osc, tau, speed = universal(-1, "1/2"), sigma, v
     for count in range(most):
         step = osc.impact_map(tau, speed)
         if float(step.flight_time) > 1:
@@ -165,7 +165,7 @@ def _edge(sigma: float, count: int) -> tuple[float, float]:
 @lru_cache(maxsize=4)
 def feet_on_the_landing_arc(r: str) -> tuple[float, ...]:
     """dK/ds along R(D''C''), s its length and K the foot: from C'' to B, at 59 places, the last 1e-4 from B in t."""
-    osc, rate = first_order_feet.negative(r), float(sympy.Rational(r))
+    osc, rate = universal(-1, r), float(sympy.Rational(r))
     grazing = 4 - np.geomspace(4, 1e-4, 60)
     sigma = -(4 * grazing + np.sqrt(36 - 2 * grazing**2)) / 6
     flight = -4 * sigma - 2 * grazing
@@ -204,8 +204,8 @@ def _crossings(sigma: float, low: float, high: float, coarse: int = 76, fine: in
 def _off(sigma: float, v: Any) -> Any:
     """foot - X over one phase, r = 1/2; chatter below v = 1e-7 is summed up to 1e-13."""
     return true_orbits.resting_times(
-        first_order_feet.negative("1/2"), np.full_like(v, sigma), v, 120, 1e-7
-    ) - first_order_feet.foot("1/2")
+        universal(-1, "1/2"), np.full_like(v, sigma), v, 120, 1e-7
+    ) - first_order_feet.limit_of("1/2")
 
 
 RATES = ("1/10", "1/2", "9/10")

@@ -42,8 +42,8 @@ OTHERS: tuple[Any, ...] = (
     "__import__('os')", "lambda: 0", "1 if 1 else 2", "cos", "1;2", "\n1", ["1"], {"value": "1", "radius": "1"},
     {"value": "0", "radius": "9"}, [["1"] * 3] * 3, "2**2**2**2**2**9", "log(-1)", "1/(1-1)", "exp(exp(exp(exp(9))))",
 )  # fmt: skip
-WORDS = ("first impact", "periodic orbit", "chatter limit", "horseshoe", "event", "border orbit", "invariant arc", "fold",
-         "period-doubling", "torus", "graze", "hidden impact", "accumulation", "lift-off", "above", "below", "model")  # fmt: skip
+WORDS = ("first impact", "periodic orbit", "chatter limit", "horseshoe", "horseshoes", "event", "border orbit", "invariant arc",
+         "fold", "period-doubling", "torus", "graze", "hidden impact", "accumulation", "lift-off", "above", "below", "model")  # fmt: skip
 DEAR = {"torus": 0.005, "fold": 0.01, "doubling": 0.01, "border": 0.015, "gamma_at_swan": 0.015, "hidden": 0.03}
 USUAL = 0.03
 """Shares of the forgeries in which a number moves: the second program has to enclose the motion again."""

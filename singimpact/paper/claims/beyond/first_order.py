@@ -7,16 +7,14 @@ import sympy
 
 from singimpact.paper.claims.claim import Check, Encoding
 from singimpact.paper.claims.sections.section3 import NORMALLY_HYPERBOLIC
-from singimpact.paper.claims.verifiers import Finding, every, is_zero, measured_on, same, sample
+from singimpact.paper.claims.verifiers import every, is_zero, same, sample
 from singimpact.paper.routes import first_order as route
 from singimpact.paper.routes.first_order import A2, A3, Change, damping, first, h, j, s, second
-from singimpact.paper.trials.first_order_feet import MODELS, RATES, Model, measured
 from singimpact.theory.impact_sheet import generic_sheet
 from singimpact.theory.multipliers import launch_velocity
 
 X = sympy.Symbol("X")
 SHOWN = 3  # contact orders at which v_c is compared beside the identity for every j
-WITHIN = 0.1  # of an order, between distances H that differ by a factor 2
 
 
 def _removed(stated: sympy.Expr) -> Check:
@@ -73,25 +71,6 @@ def _shifted(stated: sympy.Expr) -> Check:
     )
 
 
-def _orders(stated: tuple[int, int, sympy.Expr]) -> Check:
-    """(orders of X_H - X without and with the term of first order; that term over chi H)."""
-    plain, corrected, term = stated
-
-    def orders(model: Model, rate: str) -> Finding:
-        feet = measured(model, rate)
-        weight = float(term.subs(X, feet.limit))
-        rest = [off - weight * feet.chi * size for size, off in zip(feet.sizes, feet.offsets, strict=True)]
-        bare, removed = feet.order(feet.offsets), feet.order(rest)
-        near = abs(bare - plain) <= WITHIN and abs(removed - corrected) <= WITHIN
-        numbers = {"model": model.name, "r": rate, "orders": f"{bare:.3f}, {removed:.3f}"}
-        return f"{bare:.3f} and {removed:.3f} at r = {rate}", near, numbers
-
-    def said(model: Model, words: str) -> str:
-        return f"{model.name}, chi = {measured(model, RATES[0]).chi:.4f}: orders {words}"
-
-    return measured_on(MODELS, RATES, orders, said)
-
-
 ALPHA = (2 * second + first * damping) / (2 * (j + 3) * first)
 CHI = damping + 2 * A3 / (3 * A2)
 
@@ -117,10 +96,5 @@ CLAIMS = {
             -(damping + A3 / (3 * A2)) * (X**2 - 1) / 10,
             -(damping - 2 * A3 / (3 * A2)) * (X**2 - 1) / 10,
         ),
-    ),
-    "b:first-order-measured": Encoding(
-        (1, 2, -(X**2 - 1) / 10),
-        _orders,
-        ((2, 2, -(X**2 - 1) / 10), (1, 2, (X**2 - 1) / 10), (1, 2, -(X**2 - 1) / 9), (1, 1, -(X**2 - 1) / 10)),
     ),
 }

@@ -257,7 +257,7 @@ def _gamma(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
     first = min(
         sympy.Poly(model.zero_set().subs(t, 1 - sigma), sigma).real_roots()
     )  # whose flight from rest lands at B
-    near_A = model.slope_of_acceleration(-1)
+    near_A, at_B = model.slope_of_acceleration(-1), model.value_at_point(landing, (first, 1 - first))
     return persisting(
         [
             (f"from sigma = {first} the flight from rest lands at B, {low} < {first}", bool(low < first < high)),
@@ -266,11 +266,7 @@ def _gamma(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
             ("along (1, -1) x' at the landing is stationary on Z, and v has the slope a", all(map(is_zero, left_over))),
             ("a > 0 for sigma < -1: transverse", positive_on(push, sigma, -sympy.oo, -1)),
         ],
-        [
-            ("x' where it lands at B", model.value_at_point(landing, (first, 1 - first))),
-            ("a'(A)", near_A),
-            ("a'(B)", model.slope_of_acceleration(1)),
-        ],
+        [("x' where it lands at B", at_B), ("a'(A)", near_A), ("a'(B)", model.slope_of_acceleration(1))],
         modulo=(STABLE,),
     )
 

@@ -31,7 +31,7 @@ INCLINATION = "the inclination lemma"
 later, place = sympy.symbols("t_1 s")  # length of the next flight; place of landing
 m, e, y = sympy.symbols("m e y")  # slope of a chord of a conic; what a flight lasts longer; a root
 HORIZON_SLOPES, REST_SLOPES = (-2, -sympy.Rational(3, 2)), (2, 3)  # from D to A on the horizon, C to B on the zero set
-AT_A = "a'(A)", model.slope_of_acceleration(-1)
+AT_A, AT_B = ((f"a'({name})", model.slope_of_acceleration(place)) for name, place in (("A", -1), ("B", 1)))
 THIRD, HALF, TEAR = sympy.Rational(1, 3), sympy.Rational(1, 2), sympy.Rational(3, 8)
 
 
@@ -376,7 +376,7 @@ def _separated(stated: tuple[bool, bool]) -> Check:
             ("dt_1/ds > 0 on the closed region", forward),
             ("the Jacobian of H and Z at E", crossing(model.E)),
             AT_A,
-            ("a'(B)", model.slope_of_acceleration(1)),
+            AT_B,
         ],
         modulo=(STABLE,),
     )
