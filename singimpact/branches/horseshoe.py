@@ -213,15 +213,12 @@ def _followed(saddle: PeriodicOrbit, states: Array, bits: int, over: str = "") -
 def _crossed(route: "_Route") -> Horseshoe:
     """The first N, from wide to narrow, for which all sets are crossed."""
     n, why = route.n, "no impact of the orbit is near enough to the saddle"
-    order = product(range(n * ((len(route.states) - 1) // n), -1, -n), SETTINGS.widths)
-    for j, widest in (*route.first, *order):
+    for j, widest in product(range(n * ((len(route.states) - 1) // n), -1, -n), SETTINGS.widths):
         size = abs(route.places[j, 0])
         if not (abs(route.places[j, 1]) < 0.1 * size < 0.1 * SETTINGS.widest * route.period):
             continue
         try:
-            loops = route.looped(j, Fraction(size / sqrt(route.far)), widest)
-            route.first = ((j, widest),)
-            return loops
+            return route.looped(j, Fraction(size / sqrt(route.far)), widest)
         except Refused as reason:
             why = str(reason)
     raise Refused(why)
@@ -252,7 +249,6 @@ class _Route:
     def __init__(self, cones: Cones, states: Array, over: str, reach: Fraction) -> None:
         osc, balls = cones.saddle.oscillator, cones.map.balls
         self.cones, self.states, self.reach = cones, states, reach
-        self.first: tuple[tuple[int, int], ...] = ()  # sets that were crossed for another value of the number
         self.map = EnclosedMap(osc, SETTINGS.digits, balls.bits, over, reach) if over else cones.map
         self.n, self.period = int(cones.saddle.n), float(cones.map.period)
         self.far = abs(float(cones.orbit.multipliers[0][0].value))  # type: ignore[index]
@@ -295,9 +291,7 @@ class _Route:
             missed = model_step(osc, states[:-1]) - states[1:]
             missed[:, 0] -= self.period * np.rint(missed[:, 0] / self.period)
             states = states + route._moved(missed, [-route.places[0, 1], -route.places[-1, 0]])
-        there = _Route(cones, states, over, reach)
-        there.first = self.first
-        return there
+        return _Route(cones, states, over, reach)
 
     def looped(self, j: int, a: Fraction, widest: int) -> Horseshoe:
         """The loops through an N of this size and the impact j; `Refused` where a set is not crossed."""

@@ -249,10 +249,9 @@ def _of_border(orbit: BorderOrbit) -> Certificate:
 
 def _over(over: str, sealed: Certificate) -> Certificate:
     """The certificate whose model has the number by its name, where it is no parameter anyway."""
-    model = sealed.content["model"]
-    if over in model.get("parameters", {}):
+    if over in sealed.content["model"].get("parameters", {}):
         return sealed
-    model = {**model, over: over}
+    model = {**sealed.content["model"], over: over}
     content = {name: entry for name, entry in sealed.content.items() if name != "digest"} | {"model": model}
     return Certificate({**content, "digest": digest_of(content)})
 

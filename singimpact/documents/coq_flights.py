@@ -14,14 +14,14 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.balls import BITS_A_DIGIT
-from singimpact.algebra.expressions import Expression, add, multiply, names_in, number
-from singimpact.algebra.numbers import as_float, as_fraction, constant, sign_of
+from singimpact.algebra.expressions import Expression, names_in
+from singimpact.algebra.numbers import as_float, as_fraction, constant
 from singimpact.branches.krawczyk import enclosed_orbit
 from singimpact.documents.rendering import environment
 from singimpact.flights.flight_path import path
 from singimpact.flights.impact_map import impact_map
 from singimpact.inputs import InputError, need
-from singimpact.oscillator.linear import LinearForm, linear_form
+from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator
 
 LIBRARY = Path(__file__).parent / "templates" / "flights.v"
@@ -47,7 +47,12 @@ def coq_flight(content: Mapping[str, Any], sentence: str) -> str:
     )
     osc = Oscillator(**{name: text for name, text in content["model"].items() if name != "period"})
     form = linear_form(osc)
-    if form is None or osc.upper is not None or names_in(osc.restitution) or not _oscillates(form):
+    if (
+        form is None
+        or osc.upper
+        or names_in(osc.restitution)
+        or as_float(form.damping) ** 2 >= 4 * as_float(form.stiffness)
+    ):
         raise InputError(f"{no_file}: a linear model with one wall, a number r and less than critical damping has one")
     state = content["states"][0] if orbit else content
     tau, v = (constant(name, state[name]["value"] if orbit else content["launch"][name]) for name in ("tau", "v"))
@@ -71,10 +76,6 @@ def coq_flight(content: Mapping[str, Any], sentence: str) -> str:
     values |= {"tau": tau, "v": v, "span": constant("period", content["period"]) if orbit else None}
     values |= {"bits": ceil(BITS_A_DIGIT * digits) + 64, "library": LIBRARY.read_text(encoding="utf-8").rstrip()}
     return str(environment().get_template("flight.v.j2").render(values))
-
-
-def _oscillates(form: LinearForm) -> bool:
-    return sign_of(add(form.stiffness, multiply(number(Fraction(-1, 4)), form.damping, form.damping))) > 0
 
 
 def _phases(osc: Oscillator, tau: float, v: float, length: float) -> list[Fraction]:

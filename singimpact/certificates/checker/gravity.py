@@ -135,6 +135,18 @@ class Gravity:
             return ((-self.square).sqrt() * S).atanh() / (-self.square).sqrt()
         return S + within((root * S).atanh() / root - S) if root > 0 else S
 
+    def log_concave(self) -> bool:
+        """Whether (ln |A|)'' < 0 before the contact: with B = |A|/x^j, j B^2 + (x B')^2 > B x^2 B''."""
+        more = within(self.tail(self.j) * (self.K + 1) * 2 / (1 - self.s0 / self.R))  # of the terms by k^2
+
+        def concave(x: Any) -> bool:
+            weights = (lambda _: 1), (lambda k: k - self.j), (lambda k: (k - self.j) * (k - self.j - 1))
+            B, first, second = (series(self, x, weight) for weight in weights)
+            return bool(self.j * B * B + first * first > B * (second + more))
+
+        ends = [-self.s0 * n / PIECES for n in range(PIECES + 1)]
+        return all(concave(ends[n].union(ends[n + 1])) for n in range(PIECES))
+
     def speeds(self, S: Any, x: Any) -> list[Any]:
         """W and U at (S, l = x), then their derivatives by S, then by l."""
         moved = [[arb_series([part, int(i == k)], prec=2) for i, part in enumerate((S, x))] for k in (0, 1)]

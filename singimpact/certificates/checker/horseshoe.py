@@ -84,13 +84,12 @@ def horseshoes(model: Model, content: dict[str, Any], bits: int) -> None:
         text = {**text, "f": shifted, "clearance": "0"}
     for formula in (text["g"], text["f"]):  # whatever the number is: it is no rate of t, and not in the period
         require_period(Formula(formula, others), content["period"])
-    low, high = map(Fraction, content["between"])
+    (low, high), period = map(Fraction, content["between"]), Formula(content["period"], others)()
     for piece in content["pieces"]:
         middle, span = Fraction(piece["number"]), Fraction(piece["reach"])
         need("follow", middle - span == low, "the pieces do not follow one another")
         low = middle + span
-        family = Model(text, over, ball(middle))
-        require_loops(family, piece, growth(content, -1), Formula(content["period"], others)(), bits)
+        require_loops(Model(text, over, ball(middle)), piece, growth(content, -1), period, bits)
     need("whole", low == high, "the pieces do not cover the interval")
 
 
@@ -132,10 +131,8 @@ def seen(other: Set, one: Set, off: list[Any]) -> list[Any]:
 
 def slices(model: Model, span: Any, count: int) -> list[tuple[Model, Any]]:
     """The model for parts of the interval of its number, each with the distances from the middle."""
-    if not model.over:
-        return [(model, arb(0))]
-    shifts = [span * (arb(2 * k + 1) / count - 1) + within(span / count) for k in range(count)]
-    return [(model.at(model.value + shift), shift) for shift in shifts]
+    shifts = [span * (arb(2 * k + 1) / count - 1) + within(span / count) for k in range(count if model.over else 1)]
+    return [(model.at(model.value + shift) if model.over else model, shift) for shift in shifts]
 
 
 def require_crossed(model: Model, pair: tuple[Set, Set], impacts: int, lengths: tuple[Any, Any], bits: int) -> None:

@@ -15,6 +15,17 @@ a box.
 
 From these: below, chatter completes before tau; above, finitely many impacts come before tau; between them lies one
 Lipschitz graph.  Every r of an interval has its lambda in one of the boxes, as r(lambda) is continuous.
+
+For linear models the same is shown once more, by lemmas that the first program does not have, where the first of them
+holds.
+
+4. ln |A| is concave before tau.  A flight of length t lands at the distance e with the speed V, the mean over it of
+   (t-w) A(e+w), and one of length t1 is launched there with L, that of (t1-w) A(e-w).  V_t and L_t1 are positive, and
+   V_e/V, L_e/L are means of (ln A)' beyond e and before it.  So t1 rises as e falls and as t rises: orbits keep their
+   order.  At each S the launches whose chatter completes before tau are the slow ones, those that pass tau the fast
+   ones, two open sets.  Two orbits between them would tend to tau, while their distance does not fall: there is one.
+5. The flights from L(S) +- Kl S^N land on the sides of the same curves on which they start, and their lengths rise with
+   S.  By the order all launches beyond them do so: the one between lies between the two curves.
 """
 
 from __future__ import annotations
@@ -127,8 +138,8 @@ def restitution(j: int, x: Any) -> Any:
 class Box:
     """The series for all lambda of a box."""
 
-    def __init__(self, o: Gravity | Flights, content: dict[str, Any], r: Any) -> None:
-        self.o, self.content, j = o, content, o.j
+    def __init__(self, o: Gravity | Flights, content: dict[str, Any], r: Any, ordered: bool = False) -> None:
+        self.o, self.content, self.ordered, j = o, content, ordered, o.j
         self.N, D, self.pieces = (int(content[name]) for name in ("N", "D", "pieces"))
         low, high = (ball(Fraction(end)) for end in content["lambda"])
         need("orders", self.N < D <= o.K - j, "N < D is asked of a box, and D within the series of the flights")
@@ -208,8 +219,8 @@ class Box:
         need("covered", not todo, "the boxes of lemma 1 do not cover the square")
         return least
 
-    def cones(self, a: Any, b: Any) -> tuple[Any, Any, Any, Any]:
-        """Lemma 3 on a piece: bounds of (H + r)/l, of U times 1 - l, of G, and of the growth."""
+    def cones(self, a: Any, b: Any, R: Any, Kl: Any) -> tuple[Any, Any, Any, Any]:
+        """Lemmas 3 and 5 on a piece: bounds of (H + r)/l, of U times 1 - l, of G, and of the growth."""
         Clock.look()
         o, j, eta, M, L = self.o, self.o.j, self.eta, self.slope, self.L
         S = (a - 2 * M * eta).max(arb(0)).union((b + 2 * M * eta).min(o.s0))
@@ -231,6 +242,10 @@ class Box:
         by_l = (j + 1) * x**j * (1 - x1) * W1 + x ** (j + 1) * S * along - self.r * ((1 - x) * Ux - U)
         by_S = x ** (j + 2) * along - self.r * (1 - x) * US + by_l * dL(S)
         d, g, e = -by_l / by_y1, -by_S / by_y1, x + S * dL(S)
+        barriers = Kl * -by_y1 * (d - x**self.N) > R and 1 - e > Kl * (self.N + 1) * S**self.N
+        need(
+            "Kl", barriers or not self.ordered, "lemma 5 is not shown: the curves beside gamma are no barriers", Refused
+        )
         up = d - abs(g) * M
         # the cones are expanded nowhere on l = 0, by 1/0, and l = 1, by r - S L' where L first comes to 1 - eta
         expanded = inside and U > 0 and fall > 0 and up > 1 and M * up > abs(e) * M + S and e * d - g * S > 0
@@ -247,7 +262,7 @@ class Box:
             error = Refused if abs(E).overlaps(R) else Wrong
             need("residual", abs(E) <= R, f"the residual is not shown to be below {R.str(8)}", error)
         least = self.least_drift()
-        bounds = [self.cones(a, b) for a, b in self.steps()]
+        bounds = [self.cones(a, b, R, Kl) for a, b in self.steps()]
         high = -lowest(-bound[2] for bound in bounds)
         push = lowest(lowest([rate]) * lowest([U]) * lowest([G]) for rate, U, G, _ in bounds)
         bounded = push > 0 and R * high / (least * push) <= Kl
@@ -287,7 +302,8 @@ def invariant_arc(model: Model, content: dict[str, Any], bits: int) -> None:  # 
     need("touch", all(one[1] == other[0] for one, other in pairwise(cuts)), "the boxes of lambda do not touch")
     all_in = restitution(j, ball(cuts[0][0])) <= ends[0] and ends[-1] <= restitution(j, ball(cuts[-1][1]))
     need("lambda", all_in, "the boxes of lambda do not contain the lambda of every r")
-    boxes = [Box(o, numbers, r) for numbers in content["boxes"]]
+    ordered = isinstance(o, Gravity) and o.log_concave()
+    boxes = [Box(o, numbers, r, ordered) for numbers in content["boxes"]]
     for box in boxes:
         box.require()
     if single:

@@ -6,11 +6,13 @@ import json
 from pathlib import Path
 
 import flint
+import mpmath
+import numpy as np
 import pytest
 from second_program import changed, copied, dropped, is_read_back, no_number_may_change, refuses, renewed
 
 import singimpact as si
-from singimpact.certificates import Flights, Gravity, Growing, checker
+from singimpact.certificates import TERMS, Flights, Gravity, Growing, Model, checker
 from singimpact.certificates.checker import invariant_arc
 
 EXAMPLES = Path(__file__).parent / "examples"
@@ -83,6 +85,7 @@ def test_false_statements_are_refused(name, made):
     refuses(boxed(content, M=str(float(true["M"]) * 40)), "lemma 3")
     for bound, why in (("R", "residual"), ("Kl", "Kl is not")):
         refuses(boxed(content, **{bound: str(0.8 * float(true[bound]))}), why)
+    refuses(boxed(content, Kl=str(0.1 * float(true["Kl"]))), "lemma 5")
     refuses(boxed(content, grow=str(1.1 * float(true["grow"]))), "grow as fast")
     refuses(boxed(content, tree="l" + true["tree"][1:-1]), "cover|fit")
     refuses(boxed(content, tree="."), "lemma 1")
@@ -249,3 +252,80 @@ def test_gamma_that_ends_at_time_zero_is_accepted():
     model = si.ImpactOscillator("x", "sin(2*t)", 0, "1/2")
     text = si.certify(model.certified_gamma("-0.1", reach="1/4")).text
     checker.check(json.loads(text))
+
+
+# ---- lemmas 4 and 5, which the first program does not have
+
+GRAVITIES = [
+    ("x", "cos(2*t)", "0.3", 2.5085408172000436, lambda t: mpmath.cos(2 * t)),
+    ("x", "cos(2*t) + cos(6*t)/4", "0.2", 2.5871971975887016, lambda t: mpmath.cos(2 * t) + mpmath.cos(6 * t) / 4),
+    ("x", "cos(2*t) - cos(10*t)/3", "0.1", 2.560354491995202, lambda t: mpmath.cos(2 * t) - mpmath.cos(10 * t) / 3),
+    ("x + xdot/5", "sin(t) + sin(9*t)/3", "0", 0.0, lambda t: mpmath.sin(t) + mpmath.sin(9 * t) / 3),
+    (  # A = sin(t) (1.002 - cos(t + 0.2)) is small at t = -0.2
+        "x",
+        "1.002*sin(t) - sin(2*t + 0.2)/2 + sin(0.2)/2",
+        "0",
+        0.0,
+        lambda t: mpmath.sin(t) * (mpmath.mpf("1.002") - mpmath.cos(t + mpmath.mpf("0.2"))),
+    ),
+]
+
+
+def gravity(f, g, c, tau, reach):
+    model = Model({"f": f, "g": g, "clearance": c, "restitution": "0.5"})
+    return Gravity(model, flint.arb(tau), 1, flint.arb(reach))
+
+
+@pytest.fixture
+def precise():
+    before = flint.ctx.prec, flint.ctx.cap
+    flint.ctx.prec, flint.ctx.cap = 128, TERMS
+    yield
+    flint.ctx.prec, flint.ctx.cap = before
+
+
+@pytest.mark.usefixtures("precise")
+@pytest.mark.parametrize("place", range(len(GRAVITIES)))
+def test_the_gravity_is_called_log_concave_where_it_is(place):
+    """Beside (ln |A|)'' of the closed form, by differences in 40 digits."""
+    f, g, c, tau, forcing = GRAVITIES[place]
+    half = mpmath.mpf("0.1") if "xdot" in f else 0
+    verdicts = set()
+    with mpmath.workdps(40):
+        w = mpmath.sqrt(1 - half**2)
+
+        def pull(distance):
+            t = mpmath.atan(-w * distance) / w
+            pressed = forcing(tau + t) - mpmath.mpf(c)
+            return mpmath.log(-mpmath.exp(half * t) * mpmath.cos(w * t) ** 3 * pressed)
+
+        for reach in (0.05, 0.125, 0.25, 0.4):
+            bends = [mpmath.diff(pull, mpmath.mpf(reach) * n / 60, 2) for n in range(1, 61)]
+            verdict = gravity(f, g, c, tau, reach).log_concave()
+            verdicts.add((verdict, max(bends) < 0))
+            assert max(bends) < 0 or not verdict
+    assert verdicts >= {(True, True), (False, False)} if place == len(GRAVITIES) - 1 else (True, True) in verdicts
+
+
+@pytest.mark.usefixtures("precise")
+@pytest.mark.parametrize("r", ["0.2", "0.5", "0.9"])
+def test_orbits_keep_their_order_where_the_gravity_is_log_concave(r):
+    """Faster launches at one time stay ahead at each impact before tau, and their flights are longer, in s = tan."""
+    f, g, c, end, _ = GRAVITIES[0]
+    assert gravity(f, g, c, end, 0.5).log_concave()
+    osc = si.ImpactOscillator(f, g, c, r)
+    launches = np.geomspace(1e-3, 0.3, 40)
+    tau, v = np.full(40, end - np.arctan(0.5)), launches
+    length, compared = np.zeros(40), 0
+    for _ in range(6):
+        step = osc.impact_map(tau, v)
+        before = np.asarray(step.tau) < end
+        s = np.tan(np.where(before, step.tau, end) - end)
+        length = s - np.tan(tau - end)
+        ahead = np.flatnonzero(before)
+        assert np.all(np.diff(ahead) == 1)  # who passes is faster than who does not
+        assert np.all(np.diff(s[ahead]) > 0)
+        assert np.all(np.diff(length[ahead]) > 0)
+        compared += ahead.size
+        tau, v = np.where(before, step.tau, np.nan)[ahead], np.asarray(step.v)[ahead]
+    assert compared > 60
