@@ -35,7 +35,7 @@ def proofs(tmp_path_factory):
 def test_nothing_is_assumed_but_the_axioms_of_the_reals(proofs):
     _, told = proofs
     texts = "".join((PROOFS / name).read_text() for name in ORDER)
-    assert told.count("Axioms:") == 3
+    assert told.count("Axioms:") == 4
     assert {name.rpartition(".")[2] for name in re.findall(r"^(\S+)(?= :|$)", told, re.M)} - {"Axioms:"} <= OF_THE_REALS
     assert sorted(ORDER) == sorted(path.name for path in PROOFS.glob("*.v"))
     assert not re.search(r"\b(Axiom|Admitted|admit|Parameter)\b", texts)
@@ -73,6 +73,9 @@ def test_the_forms_are_those_of_the_package(proofs):
         ("behind.v", "flights_shorten n : t (S n) <= r * t n", "flights_shorten n : t (S n) <= r * r * t n"),
         ("motion.v", "derivable_pt_lim speed u (- (sigma + u) ^ j)", "derivable_pt_lim speed u ((sigma + u) ^ j)"),
         ("motion.v", "s ^ (j + 1) * ((1 - l) * Q j l).", "s ^ j * ((1 - l) * Q j l)."),
+        ("order.v", "a x * a (y + w) <= a (x + w) * a y", "a (x + w) * a y <= a x * a (y + w)"),
+        ("order.v", "e' n <= e n - (t' 0%nat - t 0%nat)", "e' n <= e n - 2 * (t' 0%nat - t 0%nat)"),
+        ("order.v", "faster : 0 < t 0%nat < t' 0%nat", "faster : 0 < t 0%nat <= t' 0%nat"),
     ],
 )
 def test_a_wrong_statement_is_refused(name, right, wrong, proofs, tmp_path):
