@@ -33,8 +33,8 @@ KINDS = {
     "b:first-order": "proved",
     "b:first-order-foot": "proved modulo",
     "b:holder-bounds": "proved",
-    "b:holder": "supported",
-    "b:holder-count": "supported",
+    "b:holder": "proved modulo",
+    "b:holder-count": "proved modulo",
     "b:foot-monotone": "proved in the model",
     "b:foot": "certified",
     "b:foot-limit": "supported",
@@ -62,7 +62,7 @@ KINDS = {
 OWN = {"proved in the model": "proved"}  # the kind of a verifier whose argument is about the universal model
 
 SECONDS = (  # those of enclosures and of true orbits
-    "b:cascade", "b:homoclinic", "b:horseshoe", "b:holder", "b:holder-count",
+    "b:cascade", "b:homoclinic", "b:horseshoe",
     "b:onset", "b:events-first", "b:events-met", "b:hertz-next", "b:hertz-measured",
     "b:gamma-nonlinear", "b:gamma-swan", "b:cascade-contraction", "b:cascade-contraction-r", "b:ratio-bound",
     "b:order-exponents", "b:first-order-foot",

@@ -74,6 +74,15 @@ def test_the_holder_exponent_in_many_digits():
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("rate", ["3/10", "1/2", "4/5"])
+@pytest.mark.parametrize("start", STARTS, ids=[start.name for start in STARTS])
+def test_orbits_beside_gamma_end_by_the_exponent_and_gain_an_impact_for_each_factor(start, rate):
+    orbits = beside(start, rate)
+    assert orbits.slope == pytest.approx(log(1 / orbits.lambda_) / log(orbits.mu), abs=1e-5)
+    assert orbits.impacts[1] - orbits.impacts[0] == orbits.steps
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("rate", first_order_feet.RATES)
 @pytest.mark.parametrize("model", MODELS, ids=[model.name for model in MODELS])
 def test_feet_of_swans_differ_from_the_universal_ones_to_first_order(model, rate):

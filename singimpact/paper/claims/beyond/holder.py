@@ -17,9 +17,11 @@ from singimpact.dynamics.threshold import threshold
 from singimpact.flights.orbits import orbit_segment
 from singimpact.paper.claims.beyond.every_order import j, rising
 from singimpact.paper.claims.claim import Check, Encoding
-from singimpact.paper.claims.verifiers import Finding, agree, every, measured_on
+from singimpact.paper.claims.sections.section4_orbits import STABLE
+from singimpact.paper.claims.verifiers import agree, every
 from singimpact.paper.trials.true_orbits import System
 from singimpact.theory.fixed_points import multipliers
+from singimpact.theory.multipliers import launch_velocity
 
 RATES = ("3/10", "1/2", "4/5")
 DISTANCE = 1e-8  # the larger distance from gamma; the other is smaller by this factor, and the rounding of v is 1e-16
@@ -77,7 +79,7 @@ def beside(start: Start, rate: str) -> Beside:
 
 lam, mu = sympy.symbols("lambda mu")
 EXPONENT = sympy.log(1 / lam) / sympy.log(mu)
-NEAR = 1e-5  # of an exponent; the next terms change those found by 2e-6
+PLANE = "Hartman's theorem in the plane"
 
 
 def _between(stated: tuple[int, int, int]) -> Check:
@@ -113,28 +115,25 @@ def _fails(p: int, q: int, s: int) -> dict[str, str]:
     return {"p": str(p)}
 
 
+def _scaled() -> tuple[str, bool]:
+    """A check: next to the saddle, in coordinates in which G is (S, delta) -> (lambda S, mu delta), S is a unit."""
+    h, start, end = sympy.symbols("h s e")
+    speeds = {k + 1: launch_velocity(k, start, end) for k in (1, 2, 3)}
+    return "in the limit flights, and so the ends of chatter, scale with S", all(
+        agree(speed, {start: h * start, end: h * end}, h**n * speed) for n, speed in speeds.items()
+    )
+
+
 def _slopes(stated: sympy.Expr) -> Check:
-    """The exponent of delta, in lambda and mu, on true orbits."""
-
-    def slope(start: Start, rate: str) -> Finding:
-        orbits = beside(start, rate)
-        wanted = float(sympy.sympify(stated).subs({lam: orbits.lambda_, mu: orbits.mu}))
-        numbers = {"model": start.name, "r": rate, "found": f"{orbits.slope:.6f}", "stated": f"{wanted:.6f}"}
-        return f"{orbits.slope:.5f} at r = {rate}", abs(orbits.slope - wanted) < NEAR, numbers
-
-    return measured_on(STARTS, RATES, slope, lambda start, words: f"{start.name}, j = {start.order}: slopes {words}")
+    """The exponent of delta, in lambda and mu: S is lambda^n S where mu^n delta has come to a fixed size."""
+    left = sympy.cancel(sympy.expand_log(stated * sympy.log(mu) + sympy.log(lam), force=True))
+    return every([_scaled(), (f"lambda^n = delta^({stated}) where mu^n delta = 1", left == 0)], modulo=(STABLE, PLANE))
 
 
 def _counts(stated: int) -> Check:
-    """The number of additional impacts when delta is divided by mu."""
-
-    def count(start: Start, rate: str) -> Finding:
-        orbits = beside(start, rate)
-        more, wanted = orbits.impacts[1] - orbits.impacts[0], stated * orbits.steps
-        numbers = {"model": start.name, "r": rate, "impacts": str(more), "stated": str(wanted)}
-        return f"{more} for mu^{orbits.steps} at r = {rate}", more == wanted, numbers
-
-    return measured_on(STARTS, RATES, count, lambda start, words: f"{start.name}: more impacts, {words}")
+    """The number of additional impacts when delta is divided by mu: those that take delta/mu to delta."""
+    text = f"mu^{stated} takes delta/mu to delta; from there on the orbits are next to each other, S beside lambda S"
+    return every([_scaled(), (text, mu**stated == mu)], modulo=(STABLE, PLANE))
 
 
 CLAIMS = {

@@ -7,6 +7,7 @@ the ratio l of landing and launch time w = (1 - l)(2 + l)/6.
 import sympy
 
 from singimpact.algebra.derivations import At, substitution
+from singimpact.paper.claims.beyond.holder import PLANE
 from singimpact.paper.claims.claim import Check, Encoding
 from singimpact.paper.claims.sections.section3 import NORMALLY_HYPERBOLIC
 from singimpact.paper.claims.sections.section6_exact import persisting
@@ -86,7 +87,7 @@ def _law(stated: sympy.Expr) -> Check:
             *falling_heights(),
         ],
         [AT_A],
-        modulo=("Hartman's theorem in the plane", NORMALLY_HYPERBOLIC),
+        modulo=(PLANE, NORMALLY_HYPERBOLIC),
     )
 
 
