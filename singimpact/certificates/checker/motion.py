@@ -36,12 +36,12 @@ class Model:
         self.content, self.over, self.value = content, over, value
         parameters = dict(content.get("parameters") or {}) | ({over: value} if over else {})
         self.f, self.g, self.c = (Formula(content[name], parameters) for name in ("f", "g", "clearance"))
-        self._law = Formula(content["restitution"], parameters)
-        self.gap = None
-        if "upper" in content:
-            self.gap = Formula(content["upper"], parameters)() - self.c()
-        if not self._law.names() - {"pi", *FUNCTIONS, *parameters}:
-            need("restitution", 0 <= self._law() <= 1, "the restitution is not shown to be in [0, 1]")
+        both = [content["restitution"], content.get("upper_restitution", content["restitution"])]
+        self._law, upper = (Formula(law, parameters) for law in both)
+        self.gap = Formula(content["upper"], parameters)() - self.c() if "upper" in content else None
+        for law in (self._law, upper):
+            if not law.names() - {"pi", *FUNCTIONS, *parameters}:
+                need("restitution", 0 <= law() <= 1, "the restitution is not shown to be in [0, 1]")
 
     def at(self, value: Any) -> "Model":
         """The model with another number."""
