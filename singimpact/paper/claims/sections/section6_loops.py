@@ -321,7 +321,10 @@ def _infinitely(count: int) -> Check:
     return persisting(
         [
             *falling_heights(),
-            ("read for the manifold through A: just after tau_* a > 0 and no point rests", bool(outer > tear)),
+            (
+                f"read for the manifold through A, whose outer edge is at w = {outer}, above the tear",
+                bool(outer > tear),
+            ),
             ("G^-1 maps what is left of A into itself, one to one, and loops to loops", _mirrored() and keeps_order()),
             (
                 f"between the tear and its inverse image are the inner edge and that of w = {outer}: {edges}",
