@@ -321,10 +321,7 @@ def _infinitely(count: int) -> Check:
     return persisting(
         [
             *falling_heights(),
-            (
-                f"read for the manifold through A, whose outer edge is at w = {outer}, above the tear",
-                bool(outer > tear),
-            ),
+            ("read for the manifold through A, whose outer edge lies above the tear", bool(outer > tear)),
             ("G^-1 maps what is left of A into itself, one to one, and loops to loops", _mirrored() and keeps_order()),
             (
                 f"between the tear and its inverse image are the inner edge and that of w = {outer}: {edges}",
