@@ -391,7 +391,10 @@ def _gamma(files: tuple[str, ...], tau: str | None, options: dict[str, Any]) -> 
     """`certify gamma [MODEL]`."""
     from singimpact.certificates.certificate import certify
 
-    taken = [f"--{name}" for name in ("orbit", "border", "chatter", "horseshoe", "event", "doubling") if options[name]]
+    taken = [
+        *(f"--{name}" for name in ("orbit", "border", "chatter", "horseshoe", "event", "doubling") if options[name]),
+        *(["--format coq"] if options["format"] == "coq" else []),
+    ]
     if len(files) > 1 or taken:
         raise InputError(f"certify gamma takes one model: {', '.join([*files[1:], *taken])} is not accepted")
     if options["output"] is not None:

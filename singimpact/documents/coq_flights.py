@@ -59,6 +59,7 @@ def coq_flight(content: Mapping[str, Any], sentence: str) -> str:
     radii = [Fraction(state[name]["radius"]) for name in ("tau", "v")]
     digits, speed = ceil(-log10(min(radii))) + MORE, Fraction(state["v"]["value"])
     start = as_float(tau), as_float(v)
+    need(start[1] > 0, InputError(f"{no_file}: launches with v > 0 have one"))
     if orbit:
         closer = enclosed_orbit(osc, [start[0]], [start[1]], int(content["periods"]), digits)
         if isinstance(closer, str):

@@ -80,8 +80,7 @@ def horseshoes(model: Model, content: dict[str, Any], bits: int) -> None:
     over, text = content["over"], content["model"]
     others = {name: number for name, number in model.g.parameters.items() if name != over}
     if over in Formula(text["clearance"], others | {over: 0}).names():  # x is measured from the wall then
-        shifted = re.sub(r"\bx\b", f"(x + ({text['clearance']}))", text["f"])
-        text = {**text, "f": shifted, "clearance": "0"}
+        text = {**text, "f": re.sub(r"\bx\b", f"(x + ({text['clearance']}))", text["f"]), "clearance": "0"}
     for formula in (text["g"], text["f"]):  # whatever the number is: it is no rate of t, and not in the period
         require_period(Formula(formula, others), content["period"])
     (low, high), period = map(Fraction, content["between"]), Formula(content["period"], others)()

@@ -119,6 +119,7 @@ def test_the_theorem_says_what_the_certificate_says():
             lambda: si.ImpactOscillator("x + 3*xdot", "cos(2*t)", 0, "0.8").impact_map("0.9", "0.3", digits=15),
             "damping",
         ),
+        (lambda: si.linear("2.8", 0, "0.8").impact_map("2.5", "0", digits=15), "v > 0"),
         (lambda: si.linear("2.8", 0, "0.8").periodic(2, 2)[0], "orbits of one impact"),
         (
             lambda: si.linear("2.8", 0, "0.8").chatter_limit("0.9", "0.005", digits=15),
@@ -141,3 +142,9 @@ def test_from_the_command_line(singimpact, tmp_path):
     singimpact("certify", *model, "--tau", "0.9", "--v", "0.3", "--format", "coq", "-o", str(tmp_path / "hit.v"))
     assert proved((tmp_path / "hit.v").read_text(encoding="utf-8"), tmp_path)
     assert "Theorem first_impact" in singimpact("certify", *model, "--tau", "1", "--v", "1", "--format", "coq").output
+
+
+def test_a_proof_of_gamma_has_no_coq_file(singimpact):
+    done = singimpact("certify", "gamma", "--omega", "2", "--restitution", "0.5", "--format", "coq")
+    assert "certify gamma takes one model: --format coq is not accepted" in done.stderr
+    assert done.exit_code == 2

@@ -12,10 +12,10 @@ from singimpact.paper.claims.claim import Check, Encoding
 from singimpact.paper.claims.sections.section3 import NORMALLY_HYPERBOLIC
 from singimpact.paper.claims.sections.section6_exact import persisting
 from singimpact.paper.claims.sections.section6_loops import (
-    AT_A,
     HALF,
     TEAR,
     THIRD,
+    at_A,
     edges_beside_A,
     ell,
     excess,
@@ -52,7 +52,7 @@ def _map(stated: tuple[sympy.Expr, sympy.Expr, sympy.Expr]) -> Check:
             ("with one l in (-1/2, 0) for each r, so w lies between 1/3 and 3/8", below),
             *falling_heights(),
         ],
-        [AT_A, ("the distance of the tear from 1/3", graze - THIRD)],
+        [at_A(), ("the distance of the tear from 1/3", graze - THIRD)],
         witness=lambda: {"above": str(above), "tear": str(graze), "below": f"{inner()} = 0"},
         modulo=(NORMALLY_HYPERBOLIC,),
     )
@@ -68,7 +68,7 @@ def _crossings(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
             (f"there {inner()} = 0", same(inner(), polynomial)),
             *falling_heights(),
         ],
-        [AT_A, ("the slope by w of x' at A", sympy.diff(excess(sympy.Integer(-1), w), w))],
+        [at_A(), ("the slope by w of x' at A", sympy.diff(excess(sympy.Integer(-1), w), w))],
         modulo=(NORMALLY_HYPERBOLIC,),
     )
 
@@ -86,7 +86,7 @@ def _law(stated: sympy.Expr) -> Check:
             (f"x' at A is {near} and changes by {shrunk} with s and v by lambda and lambda^2", same(shrunk, stated)),
             *falling_heights(),
         ],
-        [AT_A],
+        [at_A()],
         modulo=(PLANE, NORMALLY_HYPERBOLIC),
     )
 
