@@ -4,6 +4,7 @@ from singimpact import theory as theory
 from singimpact.bench.selftest.run import selftest as selftest
 from singimpact.branches.border import border_orbits as border_orbits
 from singimpact.branches.branch import branch as branch
+from singimpact.branches.certified_diagram import certified_diagram as certified_diagram
 from singimpact.branches.doublings import cascade as cascade
 from singimpact.branches.event_curve import event_curve as event_curve
 from singimpact.branches.homoclinic import homoclinic_points as homoclinic_points

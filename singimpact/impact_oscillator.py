@@ -62,7 +62,8 @@ class ImpactOscillator(Oscillator):
     # studies of the model as a whole, each documented as a function of `singimpact`
     basins, bifurcation, lyapunov, threshold = Study(), Study(), Study(), Study()
     tangency_points, classify, grown_gamma, release_map = Study(), Study(), Study(), Study()
-    border_orbits, transitions, explore, selftest = Study(), Study(), Study(), Study()
+    border_orbits, certified_diagram, transitions = Study(), Study(), Study()
+    explore, selftest = Study(), Study()
     ensemble, regions, fit, sensitivity = Study(), Study(), Study(), Study()
 
     @with_walls(_at_walls)

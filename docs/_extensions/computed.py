@@ -76,9 +76,9 @@ def figures(place: Path, steps: Steps) -> str:
     for number in steps((*FIGURES, *BEYOND), "drawing figures... ", "figure {}"):
         shown = kept_picture(number)
         drawn(shown).savefig(place / f"figure{number}.png", dpi=200)
-        told = ", ".join(f"`{claim}`" for claim in shown.claims)
+        told = f" Claims: {', '.join(f'`{claim}`' for claim in shown.claims)}." if shown.claims else ""
         parts += [f"## {number}. {shown.title}", "", f"![{shown.title}](figure{number}.png)", "",
-                  shown.caption, "", f"Model: `{shown.model}`. Claims: {told}.", ""]  # fmt: skip
+                  shown.caption, "", f"Model: `{shown.model}`.{told}", ""]  # fmt: skip
     return "\n".join(parts)
 
 

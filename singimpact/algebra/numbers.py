@@ -131,6 +131,19 @@ def rational_number(name: str, value: Any) -> Fraction:
     return exact_value
 
 
+def rational_ends(name: str, values: object, accepted: str) -> tuple[Fraction, Fraction]:
+    """Two rational numbers, the first below the second, or a refusal.
+
+    Examples
+    --------
+    >>> rational_ends("between", ("0.7", 1), "two rational numbers low < high")
+    (Fraction(7, 10), Fraction(1, 1))
+    """
+    ends = [rational_number(name, end) for end in values] if isinstance(values, tuple | list | np.ndarray) else []
+    require(len(ends) == 2 and ends[0] < ends[1], name, values, accepted)
+    return ends[0], ends[1]
+
+
 def rational_near(tree: Expression, bits: int) -> Fraction:
     """A rational within about 2^-bits, relative, of a constant tree; the number itself where it is rational.
 

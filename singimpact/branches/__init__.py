@@ -8,6 +8,7 @@ from singimpact.handed_on import names_of
 
 _FILES = {
     "ball_closing": "BallClosing Spans TouchingClosing return_slope",
+    "clearance_curves": "ClearanceCurve",
     "closing": "Closing",
     "cascade": "settled_orbit",
     "continuation": "Curve root_between",

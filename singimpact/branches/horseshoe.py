@@ -31,7 +31,7 @@ import numpy as np
 from singimpact.algebra.balls import BITS_A_DIGIT, as_rational
 from singimpact.algebra.certified import Certified, from_ball
 from singimpact.algebra.expressions import names_in
-from singimpact.algebra.numbers import Array, rational_number
+from singimpact.algebra.numbers import Array, rational_ends
 from singimpact.algebra.precision import balls_at
 from singimpact.branches.ball_closing import POINT, EnclosedMap
 from singimpact.branches.enclosed_crossing import prolonged
@@ -178,12 +178,11 @@ def horseshoe_family(saddle: PeriodicOrbit, states: Array, over: Any, between: A
     free = moving is not None and over not in names_in(moving)
     require(free, "over", over, "a number that the period does not depend on")
     limits = " in (0, 1]" if over == RESTITUTION else ""
-    ends = [rational_number("between", end) for end in between] if isinstance(between, tuple | list) else []
-    ordered = len(ends) == 2 and ends[0] < ends[1] and (not limits or 0 < ends[0] < ends[1] <= 1)
-    require(ordered, "between", between, f"two rational numbers low < high{limits}")
+    ends = rational_ends("between", between, f"two rational numbers low < high{limits}")
+    require(not limits or 0 < ends[0] < ends[1] <= 1, "between", between, f"two rational numbers low < high{limits}")
     bits = ceil(SETTINGS.digits * BITS_A_DIGIT) + 64
     with balls_at(bits):
-        return proved(lambda: _pieces(replace(saddle, oscillator=osc), states, over, (ends[0], ends[1]), bits))  # type: ignore[no-any-return]
+        return proved(lambda: _pieces(replace(saddle, oscillator=osc), states, over, ends, bits))  # type: ignore[no-any-return]
 
 
 def _pieces(saddle: PeriodicOrbit, states: Array, over: str, between: Pair, bits: int) -> HorseshoeFamily:

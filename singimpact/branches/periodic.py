@@ -18,7 +18,7 @@ import numpy as np
 from singimpact.algebra.balls import BITS_A_DIGIT, as_rational
 from singimpact.algebra.expressions import names_in
 from singimpact.algebra.isolated_zeros import IsolatedZeros
-from singimpact.algebra.numbers import Array, as_float, constant, rational_near
+from singimpact.algebra.numbers import Array, as_float, constant, rational_ends
 from singimpact.algebra.precision import balls_at, digits_at, for_user
 from singimpact.branches.ball_closing import BallClosing, return_slope
 from singimpact.branches.closing import Closing
@@ -52,6 +52,7 @@ class PeriodicSettings:
 
 
 SETTINGS = PeriodicSettings()
+WINDOW = "two numbers (low, high), 0 <= low < high"
 SEARCHED = "found from a grid of starts and from grazes: it is not shown that there are no others"
 CYCLES_SEARCHED = "found from a grid of velocities: it is not shown that there are no others"
 SPARE = 5  # digits of the states in balls beside those asked for
@@ -100,7 +101,8 @@ def periodic(
         return _limit_cycles(osc, n, (k, start, v, digits))
     if osc.period is None:
         raise InputError("the forcing has no period: a periodic orbit needs one, or f and g free of t")
-    k, window = _count("k", k, 1), None if v is None else _window(v)
+    k, window = _count("k", k, 1), None if v is None else rational_ends("v", v, WINDOW)
+    require(window is None or window[0] >= 0, "v", v, WINDOW)
     if osc.plastic and v is not None:
         raise refuse("v", v, "no v with restitution = 0: all velocities after impacts are 0")
     if n == np.inf:
@@ -153,15 +155,6 @@ def _count(name: str, value: Any, least: int) -> int:
         more = ", or math.inf" if name == "n" else ""
         raise refuse(name, value, f"a whole number from {least} to {SETTINGS.most}{more}")
     return int(value)
-
-
-def _window(v: Any) -> tuple[Fraction, Fraction]:
-    try:
-        low, high = (rational_near(constant("v", part), 64) for part in v)
-    except (TypeError, ValueError):
-        raise refuse("v", v, "two numbers (low, high), 0 <= low < high") from None
-    require(0 <= low < high, "v", v, "two numbers (low, high), 0 <= low < high")
-    return low, high
 
 
 def _all(osc: Oscillator, n: int, k: int) -> tuple[list[Array], tuple[str, ...] | None]:

@@ -35,7 +35,7 @@ DPI = 200  # of a PNG: figures are as small as they are printed
 def figure_command(which: str, output: str, kind: str, serif: bool, dark: bool, data: bool, as_json: bool) -> None:
     """Draw figure N of the paper, 1 to 17, or all, each computed from an oscillator, and list the claims that it shows.
 
-    B1 to B9 are figures of what is beyond the paper; `beyond` draws them all.
+    B1 to B10 are figures of what is beyond the paper; `beyond` draws them all.
 
     Letters are 8 points high at the size of the file, which is at most 6.9 inches wide.
 
@@ -56,7 +56,7 @@ def figure_command(which: str, output: str, kind: str, serif: bool, dark: bool, 
         click.echo(as_json_text({"figures": [dict(zip(keys, path, strict=True)) for path in written]}))
     else:
         for _, title, claims, file, _ in written:
-            click.echo(f"{file}  {title} ({', '.join(claims)})")
+            click.echo(f"{file}  {title}" + (f" ({', '.join(claims)})" if claims else ""))
 
 
 def _made(number: int | str, serif: bool, dark: bool) -> tuple[Any, Any]:

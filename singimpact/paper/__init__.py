@@ -13,7 +13,6 @@ _FILES = {
     "claims.claim": (
         "Check Claim IN_MODEL KINDS MODULO PROVED STRENGTH STRONGEST_FIRST Statement Trial Verdict compared told"
     ),
-    "claims.beyond.holder": "STARTS beside",
     "claims.deciding": "decide effective",
     "claims.engine": "imported_by keep key_of recall",
     "claims.index": "COLOURS as_svg claims_in colour_of",
@@ -22,7 +21,7 @@ _FILES = {
     "claims.verdicts": "VerdictTable verify",
     "claims.verifiers": "every sample",
     "figures": "FIGURES picture",
-    "figures.beyond_figures": "B7 B8 two_waves",
+    "figures.beyond_figures": "B7 B8 generations inner_start two_waves",
     "figures.figure_rendering": "drawn legend_words",
     "figures.outlines": "CHANGES damped",
     "routes.equations": "derived_from equation watched",
@@ -34,9 +33,6 @@ _FILES = {
     "sections": "NOTATION",
     "sections.stored_sections": "cache kept_sections marks_of",
     "sections.section_formulas": "with_Q",
-    "trials.first_order_feet": "MODELS clearance measured",
-    "trials.hertz_orbits": "POWERS above constant edge",
-    "trials.loop_heights": "SWANS generations heights inner_start",
-    "trials.true_orbits": "gamma_cases scipy_flow",
+    "trials.true_orbits": "System gamma_cases resting_times scipy_flow",
 }
 __getattr__ = names_of(__name__, _FILES)

@@ -126,6 +126,12 @@ PENS = {
     "certified": Pen(GREEN, words="certified orbit"),
     "before": Pen(GREY, DASHES, 1.4, "before"),
     "at": Pen(BLACK, DASH_DOT, 1.4, "at the transition"),
+    "(1, 1) orbits, stable": Pen(BLUE, width=2.0, words="(1, 1) orbits, stable"),
+    "(1, 1) orbits, unstable": Pen(BLUE, DASHES, 1.4, words="(1, 1) orbits, unstable"),
+    "(1, 2) orbits, stable": Pen(VERMILLION, width=2.0, words="(1, 2) orbits, stable"),
+    "(1, 2) orbits, unstable": Pen(VERMILLION, DASHES, 1.4, words="(1, 2) orbits, unstable"),
+    "(2, 2) orbits, stable": Pen(GREEN, width=2.0, words="(2, 2) orbits, stable"),
+    "(2, 2) orbits, unstable": Pen(GREEN, DASHES, 1.4, words="(2, 2) orbits, unstable"),
 }
 
 

@@ -47,6 +47,7 @@ NO_NUMBER |= {
     "homoclinic_points",
     "homoclinic_end",
     "border_orbits",
+    "certified_diagram",
     "cascade",
     "animate",
     "explore",

@@ -12,7 +12,7 @@ from flint import arb
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.certified import Certified, from_ball
 from singimpact.algebra.expressions import Expression, evaluate, names_in, number
-from singimpact.algebra.numbers import as_float, as_fraction, compare, constant, rational_number
+from singimpact.algebra.numbers import as_float, as_fraction, compare, constant, rational_ends, rational_number
 from singimpact.algebra.precision import balls_at
 from singimpact.contact.zero_ahead import ContactZero, next_zero
 from singimpact.dynamics.gamma_proof.after import PIECES, Lost, Settled, lost_contact, settled
@@ -37,6 +37,7 @@ from singimpact.oscillator.wall_acceleration import sign_of_acceleration
 
 BITS = 96  # of the balls
 DIGITS = 20  # that bounds and places are printed with
+BELOW_ONE = "two rational numbers (low, high), 0 < low < high < 1"
 PHASES = 64  # of a period, tried for a start with a_c < 0
 # Reaches that are tried where none is given, in units of 1/omega_d or of the fastest forcing
 REACHES = tuple(
@@ -245,10 +246,8 @@ def _ends(osc: Oscillator, restitution: tuple[Any, Any] | None) -> _Ends:
             raise InputError(f"restitution = {osc.restitution} is not accepted: give a number in (0, 1)")
         exact = as_fraction(osc.restitution)
         return _Ends(exact, exact, osc.restitution)
-    if not isinstance(restitution, tuple | list) or len(restitution) != 2:
-        raise refuse("restitution", restitution, "two rational numbers (low, high), 0 < low < high < 1")
-    low, high = (rational_number("restitution", end) for end in restitution)
-    require(0 < low < high < 1, "restitution", restitution, "two rational numbers (low, high), 0 < low < high < 1")
+    low, high = rational_ends("restitution", restitution, BELOW_ONE)
+    require(0 < low < high < 1, "restitution", restitution, BELOW_ONE)
     return _Ends(low, high, None)
 
 

@@ -1,6 +1,6 @@
 """Ways to decide a statement: an identity of exact expressions, and signs proved on an interval."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from itertools import product
 from typing import Any
@@ -187,29 +187,3 @@ def _apart(trial: Callable[[], tuple[str, bool]]) -> str:
     except Exception as error:  # whatever ends an integrator, the argument stands
         name, passed = f"{type(error).__name__}: {error}", False
     return f"a trial apart from the argument{'' if passed else ' FAILS'}: {name}"
-
-
-Finding = tuple[str, bool, dict[str, str]]
-
-
-def measured_on(
-    models: Iterable[Any],
-    rates: Iterable[Any],
-    measured: Callable[[Any, Any], Finding],
-    line: Callable[[Any, str], str],
-) -> Check:
-    """A check of numbers measured on several models, each at several values of a number.
-
-    Parameters
-    ----------
-    measured : (model, value) -> (the finding in words, whether it is as stated, numbers that show it if it is not).
-    line : (model, its findings joined) -> what was tested on this model.
-    """
-    checks, numbers = [], dict[str, str]()
-    for model in models:
-        findings = [measured(model, rate) for rate in rates]
-        for _, holds, wrong in findings:
-            numbers = numbers if holds else wrong
-        words = ", ".join(finding for finding, _, _ in findings)
-        checks.append((line(model, words), all(holds for _, holds, _ in findings)))
-    return every(checks, "supported", witness=lambda: numbers)

@@ -1,31 +1,30 @@
-"""Figures B1 to B9, of what the paper does not have.
+"""Figures B1 to B10, of what the paper does not have.
 
 A linear oscillator as a ball, the first correction at a swan, exponents of the threshold; heights of the loops of
 W^s(X), the foot X as a function of r, the orbit that is born at a swan; the visible outline where a swan's arc meets
-other branches of P; gamma of impacts that lose a power of a low speed.
+other branches of P; gamma of impacts that lose a power of a low speed; all simple orbits of an oscillator.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
-from math import log
+from math import sqrt
 
 import numpy as np
 import sympy
 
 from singimpact.algebra.numbers import Array, as_float
+from singimpact.branches.certified_diagram import certified_diagram
 from singimpact.dynamics.orbit import orbit
+from singimpact.dynamics.threshold import threshold
 from singimpact.dynamics.unfolded_swan import swan_configuration
 from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.wall_acceleration import acceleration
-from singimpact.paper.claims.beyond import holder
 from singimpact.paper.claims.beyond.every_order import j
 from singimpact.paper.claims.beyond.hertz import EXPONENT, FACTOR, SECOND, q
 from singimpact.paper.figures.panel import Dot, Line, Panel, Picture, Point, Region, picture_of
-from singimpact.paper.trials import first_order_feet, loop_heights
-from singimpact.paper.trials.hertz_orbits import POWERS, STARTS, measured
 from singimpact.paper.trials.universal_foot import covering, elastic, foot, scaled
 from singimpact.scenes.style import SURFACE
 from singimpact.surface.curve import Curve
@@ -46,6 +45,39 @@ def gamma_height(r: float) -> float:
     return (1 - rate) * (2 + rate) / 6
 
 
+def preimage(w: float, r: float) -> float:
+    """The height whose image under the one-dimensional map is w: (2r + 6w) l^2 = r(1 + l), w' = (1-l)(2+l)/6.
+
+    Examples
+    --------
+    >>> round(preimage(0.5, 0.5), 6)
+    0.233462
+    """
+    lead = 2 * r + 6 * w
+    ratio = (r + sqrt(r * r + 4 * r * lead)) / (2 * lead)
+    return (1 - ratio) * (2 + ratio) / 6
+
+
+def generations(w: float, r: float, count: int = SHOWN) -> list[float]:
+    """A height and its inverse images.
+
+    Examples
+    --------
+    >>> [round(each, 4) for each in generations(0.375, 0.5, 3)]
+    [0.375, 0.216, 0.1777]
+    """
+    heights_ = [w]
+    while len(heights_) < count:
+        heights_.append(preimage(heights_[-1], r))
+    return heights_
+
+
+def inner_start(r: float) -> float:
+    """The height below the tear whose flight lands behind A on W^s(X): r(1 + l - 2 l^2) = 3 l^2, -1/2 < l < 0."""
+    ratio = (r - sqrt(r * r + 4 * r * (3 + 2 * r))) / (2 * (3 + 2 * r))
+    return (1 - ratio) * (2 + ratio) / 6
+
+
 def figure_B4() -> Picture:
     """Heights of W^s(X), tears and gamma over A - h, in units of a'(A) h^2, against r."""
     rates = np.linspace(0.01, 0.99, 197)
@@ -55,39 +87,19 @@ def figure_B4() -> Picture:
         "tear": ("P", "tears: $\\delta$ and inverse images"),
         "inner": ("loop", "$W^s(X)$: upper and lower edge of each loop"),
     }
-    curves = {
-        name: np.array([loop_heights.generations(_start(name, r), r, SHOWN) for r in rates.tolist()]).T
-        for name in kinds
-    }
+    starts = {"outer": lambda _: 0.5, "tear": lambda _: 0.375, "inner": inner_start}
+    curves = {name: np.array([generations(start(r), r) for r in rates.tolist()]).T for name, start in starts.items()}
     plain, beside = [], []
     for name, (pen, words) in kinds.items():
         for row in curves[name]:
             plain.append(Line(np.stack([rates, row], axis=1), pen, name, words=words))
             beside.append(Line(np.stack([rates, np.log10(row - gamma)], axis=1), pen, name, words=words))
     plain.append(Line(np.stack([rates, gamma], axis=1), "gamma", "gamma", r"$\gamma$", 0.6))
-    worst = 0.0
-    for swan in loop_heights.SWANS:
-        for rate in loop_heights.RATES:
-            r = float(Fraction(rate))
-            loops = loop_heights.heights(swan, rate).found[-1]
-            limits = [w for name in ("outer", "inner") for w in loop_heights.generations(_start(name, r), r)]
-            worst = max(worst, float(np.abs(np.array(loops) - limits).max()))
-            for w in loops:
-                plain.append(_point(r, w))
-                beside.append(_point(r, float(np.log10(w - gamma_height(r)))))
     panels = [
         Panel(((0.0, 1.0), (0.0, 0.52)), "$r$", r"$v/(a'(A)h^2)$", "(a) heights", plain),
         Panel(((0.0, 1.0), (-4.2, -0.2)), "$r$", r"$\log_{10}(w - w_\gamma)$", "(b) above $\\gamma$", beside),
     ]
-    return picture_of("B4", "; ".join(swan.name for swan in loop_heights.SWANS), panels, facts={"farthest": worst})
-
-
-def _start(name: str, r: float) -> float:
-    return {"outer": 0.5, "tear": 0.375}.get(name) or loop_heights.inner_start(r)
-
-
-def _point(x: float, y: float) -> Line:
-    return Line(np.array([[x, y]]), "orbit", "true orbit", beads=True, words="true orbits")
+    return picture_of("B4", "x'' = s next to A", panels)
 
 
 def figure_B5() -> Picture:
@@ -120,7 +132,7 @@ def figure_B5() -> Picture:
 
 def figure_B6() -> Picture:
     """The orbit that is born: over two periods, and its hop in lengths scaled by H beside the limit."""
-    first = _swan(BORN[0])
+    first = linear(2, BORN[0], "0.8")
     run = orbit(first, 1, 0, 200)
     times = np.linspace(1.6, 1.6 + 2 * np.pi, 8001)
     height = run.sample(times).x - as_float(first.clearance)
@@ -141,13 +153,9 @@ def figure_B6() -> Picture:
     return picture_of("B6", str(first), panels, facts)
 
 
-def _swan(c: str) -> ImpactOscillator:
-    return linear(2, c, "0.8")
-
-
 def hop_in_units(c: str) -> Array:
     """(s, (x - c)/(|a''| H^4)) from the release to the end of the chatter."""
-    model = _swan(c)
+    model = linear(2, c, "0.8")
     run = orbit(model, 1, 0, 200)
     released = float(run.tau[run.kind == "release"][0])
     rested = float(run.tau[(run.kind == "complete") & (run.tau > released)][0])
@@ -295,54 +303,107 @@ def _shift(
     return lambda part: np.stack([part[:, 0], part[:, 1] - np.polyval(q, part[:, 0] - place[0])], axis=1)
 
 
-# B9: gamma of impacts that lose a power of a low speed, its exponent and its second term on true orbits.
+# B9: gamma of impacts that lose a power of a low speed, its exponent and its second term.
 
 ORDERS = {1: "graph", 2: "epsilon"}
 LARGEST = 0.6  # q
+POWERS = tuple(Fraction(n, 10) for n in (1, 2, 3, 4))
+STARTS = (  # (f, g, j): a_c vanishes at tau = 0 to order j, with |a_j|/j! = 1
+    ("0", "t", 1),
+    ("x", "sin(t)", 1),
+    ("0", "-t**2", 2),
+    ("x", "(cos(2*t) - 1)/2", 2),
+)
+FLIGHTS = 1 / 100, 1 / 300  # v/h^(j+1) at two places, half the flight time over h: impacts grow like its inverse
+FARTHEST = 0.01  # h of the first place; what an oscillator has beyond its leading term is of order h^2 here
 
 
-def exponents(order: int) -> Array:
-    """(q, (j+1)/(1-q)) at a contact order."""
-    powers = np.linspace(0, LARGEST, 121)
-    return np.stack([powers, (order + 1) / (1 - powers)], axis=1)
+def on_gamma(start: tuple[str, str, int], power: Fraction) -> tuple[float, list[tuple[float, float]]]:
+    """C and two points (h, v) of gamma over tau = -h; C is chosen so that flights have the wanted length."""
+    (f, g, order), share = start, float(1 - power)
+    growth = (order + 1) * float(power) / share  # v/h^(j+1) is a constant times h^growth
+    leading = 3 * share / (2 * (3 + (2 + float(power)) * order))
+    loss = f"{(FLIGHTS[0] / FARTHEST**growth) ** share / leading:.3g}"
+    osc = Oscillator(f, g, 0, f"-v*(1 - C*(-v)**({power}))", {"C": loss})
+    distances = [FARTHEST * (flight / FLIGHTS[0]) ** (1 / growth) for flight in FLIGHTS]
+    return float(loss), [(h, float(threshold(osc, -h).v)) for h in distances]
 
 
 def figure_B9() -> Picture:
-    """The exponent against q, and what true orbits have beyond the first term against the second term."""
+    """The exponent against q, and what gamma has beyond the first term against the second term."""
     facts = dict[str, float]()
+    powers = np.linspace(0, LARGEST, 121)
     first = [
-        Line(exponents(order), pen, f"j = {order}", f"$j = {order}$", 0.7, words=f"contact order $j = {order}$")
+        Line(
+            np.stack([powers, (order + 1) / (1 - powers)], axis=1),
+            pen,
+            f"j = {order}",
+            f"$j = {order}$",
+            0.7,
+            words=f"contact order $j = {order}$",
+        )
         for order, pen in ORDERS.items()
     ]
     second = [Line(np.array([[x, x] for x in (-4.0, -1.0)]), "before", "equal", words="equal")]
     for start in STARTS:
         for power in POWERS:
-            measurement = measured(start, power)
-            values = {j: start.order, q: sympy.Rational(power.numerator, power.denominator)}
+            values = {j: start[2], q: sympy.Rational(power.numerator, power.denominator)}
             n, k, g = (float(formula.subs(values)) for formula in (EXPONENT, FACTOR, SECOND))
-            w = (k * measurement.loss) ** (1 / (1 - float(power)))
-            rows = [
-                (np.log10(g * v / h ** (start.order + 1)), np.log10(v / (w * h**n) - 1))
-                for h, v in zip(measurement.distances, measurement.speeds, strict=True)
-            ]
-            mark = np.array([[float(power), measurement.exponent]])
-            first.append(Line(mark, "crossing", "true orbits", beads=True, words="true orbits"))
-            second += [
-                Line(np.array([row]), "crossing", "true orbits", beads=True, words="true orbits") for row in rows
-            ]
-            facts[f"{start.name}, q = {power}"] = measurement.exponent - n
+            loss, points = on_gamma(start, power)
+            w = (k * loss) ** (1 / (1 - float(power)))
+            rows = [(np.log10(g * v / h ** (start[2] + 1)), np.log10(v / (w * h**n) - 1)) for h, v in points]
+            (far, fast), (near, slow) = points
+            slope = float(np.log(fast / slow) / np.log(far / near))
+            marks = [np.array([[float(power), slope]]), *(np.array([row]) for row in rows)]
+            for lines, mark in zip((first, second, second), marks, strict=True):
+                lines.append(Line(mark, "crossing", "true orbits", beads=True, words="thresholds of true orbits"))
+            facts[f"{start[1]}, q = {power}"] = slope - n
     panels = [
         Panel(((0.0, LARGEST), (1.5, 7.0)), "$q$", r"exponent of $|\sigma|$", "(a) the exponent", first),
         Panel(
             ((-4.0, -1.0), (-4.0, -1.0)), r"$\log_{10} GP$", r"$\log_{10}$ of the excess", "(b) the second term", second
         ),
     ]
-    return picture_of("B9", "; ".join(start.name for start in STARTS), panels, facts)
+    return picture_of("B9", "; ".join(f"x'' + {f} = {g}" for f, g, _ in STARTS), panels, facts)
+
+
+# B10: all orbits of one and two impacts of an oscillator, over the clearance.
+
+ALL_OF = ("2.8", "0", "0.8"), ("-0.6", "1.8"), (0, 4)  # of x'' + x = cos(omega t): omega, c, r; the window of c and v
+MARKS = {
+    "fold": ("gamma", "fold"),
+    "period-doubling": ("crossing", "period doubling"),
+    "graze": ("rest", "graze, or edge of the window"),
+    "window": ("rest", "graze, or edge of the window"),
+    "hidden impact": ("orbit", "another flight touches the wall"),
+}
+
+
+def figure_B10() -> Picture:
+    """Velocities after the impacts of every orbit, over the clearance, and the places where orbits change."""
+    numbers, between, v = ALL_OF
+    model = linear(*numbers)
+    diagram = certified_diagram(model, between=between, v=v)
+    lines = list[Line]()
+    for arc in diagram.arcs:
+        pen = f"({arc.n}, {arc.k}) orbits, {'stable' if arc.stable else 'unstable'}"
+        lines += [Line(np.stack([arc.clearance, row], axis=1), pen) for row in arc.v.T]
+    for joint in diagram.joints:
+        pen, words = MARKS[joint.kind]
+        dots = [[float(joint.clearance.value), float(speed.value)] for speed in joint.v]
+        lines += [Line(np.array([dot]), pen, joint.kind, beads=True, words=words) for dot in dots]
+    for gap in diagram.open_parts:
+        middle = np.array([[sum(gap.between) / 2, sum(gap.v) / 2]])
+        lines.append(Line(middle, "manifold", "left open", beads=True, words="left open"))
+    panels = [
+        Panel(((-0.7, 1.9), (-0.1, 3.6)), "$c$", "$v$", "(a) all orbits", lines),
+        Panel(((-0.2, 0.12), (-0.015, 0.48)), "$c$", "$v$", "(b) the orbits near grazing", lines),
+    ]
+    return picture_of("B10", str(model), panels, {"open": float(len(diagram.open_parts))})
 
 
 DAMPING, CLEARANCE = 0.4, 0.9
 WINDOW = -0.45, 1.0  # of t in figure B1; pi/omega_d is 3.2
-SIZES = tuple(0.06 * 2.0**-n for n in range(7))  # of H in figure B2
 PENS_OF_ORDERS = ("before", "graph", "loop", "gamma", "orbit", "epsilon")
 NAMED = 0.35, 0.3, 0.27, 0.24, 0.21, 0.18  # share of the vertices, from r = 0 on, at which each curve has its letter
 
@@ -414,22 +475,7 @@ def figure_B1() -> Picture:
         moved(0, np.stack([flown, height], axis=1), "(c) its orbit from $A$", "x - c", top, hits),
         moved(1, np.stack([places, height * factor], axis=1), "(d) the same orbit", "y", tall, landed),
     ]
-    facts = {
-        "A": float(swan.A),
-        "X": float(swan.X),
-        "impacts": float(hits.size),
-        "bends": _bends(places, height * factor, landed[0]),
-    }
-    return picture_of("B1", str(model), panels, facts)
-
-
-def _bends(s: Array, y: Array, end: float) -> float:
-    """The largest |y'' - A(s)| over the first flight, as a part of the largest |A|, by differences."""
-    until = int(np.searchsorted(s, end))
-    first = np.diff(y[:until]) / np.diff(s[:until])
-    second = np.diff(first) / np.diff((s[: until - 1] + s[1:until]) / 2)
-    wanted = gravity(np.arctan(_frequency() * s[1 : until - 1]) / _frequency())
-    return float(np.abs(second - wanted).max() / np.abs(wanted).max())
+    return picture_of("B1", str(model), panels, {"A": float(swan.A), "X": float(swan.X), "impacts": float(hits.size)})
 
 
 def _box(values: Array) -> tuple[float, float]:
@@ -437,37 +483,13 @@ def _box(values: Array) -> tuple[float, float]:
 
 
 def figure_B2() -> Picture:
-    """X_H - X against H, as it is and without its term of first order."""
-    left, right, facts = list[Array](), list[Array](), dict[str, float]()
-    for model in first_order_feet.MODELS:
-        feet = first_order_feet.measured(model, "1/2", SIZES)
-        term = -(feet.limit**2 - 1) / 10 * feet.chi
-        size, off = np.array(feet.sizes), np.array(feet.offsets)
-        rest = off - term * size
-        left.append(np.stack([np.log10(size), np.log10(np.abs(off))], axis=1))
-        right.append(np.stack([np.log10(size), np.log10(np.abs(rest))], axis=1))
-        facts |= {
-            f"order, {model.name}": feet.order(off[-2:].tolist()),
-            f"without, {model.name}": feet.order(rest[-2:].tolist()),
-        }
-    box = ((-3.1, -0.8), (-6.0, -0.4))
-
-    def panel(title: str, rows: list[Array], slope: int) -> Panel:
-        low = box[0]
-        start = -0.8 if slope == 1 else -2.2
-        guide = np.array([[x, start + slope * (x - low[1])] for x in low])
-        lines = [
-            Line(guide, "before", f"slope {slope}", f"slope {slope}", 0.35, words="slopes 1 and 2"),
-            *(Line(points, "orbit", "errors", beads=True, words="five oscillators, $r = 1/2$") for points in rows),
-        ]
-        return Panel(box, r"$\log_{10} H$", r"$\log_{10}$ of the error", title, lines)
-
-    return picture_of(
-        "B2",
-        "; ".join(model.name for model in first_order_feet.MODELS),
-        [panel("(a) $|X_H - X|$", left, 1), panel("(b) without the known term", right, 2)],
-        facts,
-    )
+    """The coefficient of chi H in the foot of an unfolded swan, against r."""
+    rates = [Fraction(n, 40) for n in range(39)]
+    feet = np.array([[float(r), float(foot(r, 1e-3)[0])] for r in rates])
+    curve = np.stack([feet[:, 0], (1 - feet[:, 1] ** 2) / 10], axis=1)
+    line = Line(curve, "graph", "(1 - X^2)/10", words=r"$-\frac{1}{10}(X(r)^2 - 1)$")
+    panel = Panel(((0.0, 1.0), (-13.0, 0.0)), "$r$", r"$(X_H - X)/(\chi H)$ as $H \to 0$", lines=[line])
+    return picture_of("B2", "x'' = 12(1 - t^2), c = 0", [panel], facts={"at r = 0": float(curve[0, 1])})
 
 
 def threshold_exponents(order: int) -> Array:
@@ -480,7 +502,7 @@ def threshold_exponents(order: int) -> Array:
 
 
 def figure_B3() -> Picture:
-    """The exponent alpha of the threshold against r, for contact orders 0 to 5, with true orbits."""
+    """The exponent alpha of the threshold against r, for contact orders 0 to 5."""
     lines, facts = list[Line](), dict[str, float]()
     for order, pen in enumerate(PENS_OF_ORDERS):
         curve = threshold_exponents(order)
@@ -488,20 +510,9 @@ def figure_B3() -> Picture:
             Line(curve, pen, f"j = {order}", f"$j = {order}$", NAMED[order], words=f"contact order $j = {order}$")
         )
         facts[f"alpha at r = 1, j = {order}"] = float(curve[-1, 1])
-    for start in holder.STARTS:
-        for rate in holder.RATES:
-            orbits = holder.beside(start, rate)
-            mark = np.array([[_value(rate), orbits.slope]])
-            lines.append(Line(mark, "crossing", "true orbit", beads=True, words="slopes of true orbits"))
-            facts[f"{start.name}, r = {rate}"] = orbits.slope - log(1 / orbits.lambda_) / log(orbits.mu)
     return picture_of(
         "B3",
-        "; ".join(start.name for start in holder.STARTS),
+        "every contact point",
         [Panel(((0.0, 1.0), (0.1, 1.05)), "$r$", r"$\alpha$", lines=lines)],
         facts,
     )
-
-
-def _value(rate: str) -> float:
-    above, _, below = rate.partition("/")
-    return int(above) / int(below)

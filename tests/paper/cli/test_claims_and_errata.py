@@ -103,7 +103,7 @@ def test_every_claim_has_its_place_in_the_paper():
     assert all(place.page in range(1, 25) for place in places.values())
     assert (places["e:meq"].numbers, str(places["t:t3"])) == ("(29)", "p. 18, Theorem 5.3")
     with pytest.raises(KeyError):
-        place_of("b:cascade")
+        place_of("b:cascade-launch")
 
 
 def test_reasons_and_not_the_names_of_checks_are_printed(errata):

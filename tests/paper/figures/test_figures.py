@@ -166,7 +166,7 @@ def test_the_command(tmp_path):
 
 @pytest.mark.parametrize("wrong", [0, 18, "x", True, 2.5, "²", "1" * 5000])
 def test_no_such_figure(wrong):
-    with pytest.raises(InputError, match="a number from 1 to 17, or B1 to B9"):
+    with pytest.raises(InputError, match="a number from 1 to 17, or B1 to B10"):
         si.figure(wrong)
 
 
@@ -253,7 +253,7 @@ def test_the_command_takes_serif_and_dark(tmp_path):
     assert "#14181c" in written[2]
 
 
-SECONDS = ("B2", "B3", "B4", "B7", "B8", "B9")  # many true orbits
+SECONDS = ("B7", "B8", "B9", "B10")  # many true orbits
 
 
 @pytest.mark.parametrize(
@@ -290,40 +290,36 @@ def test_orbits_and_words_of_both_planes(number):
 
 def test_the_paper_has_none_of_them():
     assert not set(BEYOND) & set(FIGURES)
-    with pytest.raises(InputError, match="B1 to B9"):
-        picture("B10")
+    with pytest.raises(InputError, match="B1 to B10"):
+        picture("B11")
 
 
 @pytest.mark.slow
 def test_b9_slopes():
-    """Slopes of gamma between two points, beside (j+1)/(1-q); the second term raises them, most at q = 1/2."""
+    """Slopes of gamma between two points, beside (j+1)/(1-q); the second term raises them, most at q = 2/5."""
     facts = made("B9").facts
     assert len(facts) == 16
-    assert all(0 < off < (0.1 if name.endswith("1/2") else 0.003) for name, off in facts.items())
+    assert all(0 < off < (0.05 if name.endswith("2/5") else 0.01) for name, off in facts.items())
 
 
 def test_b1_the_ball_falls_freely():
-    """y'' by differences of the drawn orbit is A(s)."""
-    assert made("B1").facts["bends"] < 1e-3
+    """y'' by differences of the drawn orbit is A(s), until it lands."""
+    _, ball, _, same = made("B1").panels
+    orbit, landing, *_ = (line.points.T for line in same.lines)
+    s, y = orbit[:, orbit[0] < landing[0, 0]]
+    second = np.diff(np.diff(y) / np.diff(s)) / np.diff((s[:-1] + s[1:]) / 2)
+    wanted = np.interp(s[1:-1], *ball.lines[0].points.T)
+    assert np.abs(second - wanted).max() < 1e-3 * np.abs(wanted).max()
 
 
-@pytest.mark.slow
-def test_b2_orders():
-    facts = made("B2").facts
-    assert all(abs(order - 1) < 0.1 for name, order in facts.items() if name.startswith("order"))
-    assert all(abs(order - 2) < 0.1 for name, order in facts.items() if name.startswith("without"))
+def test_b2_starts_at_the_foot_without_restitution():
+    """X = 3 at r = 0: the mass stays where it first lands."""
+    assert made("B2").facts["at r = 0"] == pytest.approx(-0.8, abs=1e-12)
 
 
-@pytest.mark.slow
 def test_b3_ends_of_the_exponents():
     facts = made("B3").facts
     assert all(abs(facts[f"alpha at r = 1, j = {j}"] - 3 / (3 + 2 * j)) < 1e-3 for j in range(6))
-    assert all(abs(off) < 1e-4 for name, off in facts.items() if "r = " in name and "alpha" not in name)
-
-
-@pytest.mark.slow
-def test_b4_true_points_lie_on_the_curves():
-    assert made("B4").facts["farthest"] < 1e-4
 
 
 def test_b5_bounds():

@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 import sympy
+from first_order_feet import limit_of
 from scipy.optimize import brentq
 
 from singimpact.impact_oscillator import universal
-from singimpact.paper.trials import first_order_feet, true_orbits
+from singimpact.paper.trials import true_orbits
 from singimpact.status import Status
 from singimpact.theory import lambda_, mu_of_lambda
 
@@ -31,14 +32,14 @@ def halved(stays, low, high, width):
 @lru_cache(maxsize=1)
 def tangency_at_A() -> tuple[float, float]:
     """v/(sigma + 1)^2 on the stable manifold through A, to the left and to the right of A, extrapolated; r = 1/2."""
-    goal = first_order_feet.limit_of("1/2")
+    goal = limit_of("1/2")
     sides = []
     for side in (-1, 1):
         ratios = []
         for h in (0.02, 0.01):
 
             def miss(ratio: float, place: float = -1 + side * h, unit: float = h * h) -> float:
-                return first_order_feet.limit_of("1/2", place, ratio * unit) - goal
+                return limit_of("1/2", place, ratio * unit) - goal
 
             ratios.append(brentq(miss, 10.5, 13.5, xtol=1e-9))
         sides.append(2 * ratios[1] - ratios[0])
@@ -203,9 +204,7 @@ def _crossings(sigma: float, low: float, high: float, coarse: int = 76, fine: in
 
 def _off(sigma: float, v: Any) -> Any:
     """foot - X over one phase, r = 1/2; chatter below v = 1e-7 is summed up to 1e-13."""
-    return true_orbits.resting_times(
-        universal(-1, "1/2"), np.full_like(v, sigma), v, 120, 1e-7
-    ) - first_order_feet.limit_of("1/2")
+    return true_orbits.resting_times(universal(-1, "1/2"), np.full_like(v, sigma), v, 120, 1e-7) - limit_of("1/2")
 
 
 RATES = ("1/10", "1/2", "9/10")

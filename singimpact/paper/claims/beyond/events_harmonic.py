@@ -10,7 +10,6 @@ wall.  psi takes a launch (tau, v) to its flight, told by (x, x') at one time.
 
 from collections.abc import Mapping
 from fractions import Fraction
-from functools import cache
 from typing import Any
 
 import sympy
@@ -19,12 +18,9 @@ from singimpact.algebra.balls import Balls
 from singimpact.algebra.certificates import positive_on
 from singimpact.algebra.derivations import At, substitution
 from singimpact.algebra.parsing import parse
-from singimpact.algebra.precision import balls_at, digits_at
-from singimpact.impact_oscillator import ImpactOscillator, linear
+from singimpact.algebra.precision import balls_at
 from singimpact.paper.claims.claim import Check, Encoding
 from singimpact.paper.claims.verifiers import every, identity
-from singimpact.surface.outline_transitions import transitions
-from singimpact.surface.swan_families import Transition
 
 kappa, omega, P, Q, g, u, y = sympy.symbols("kappa omega P Q g u y")
 Cm, Sm, Cw, Sw, Ch, Sh = sympy.symbols("Cm Sm Cw Sw Ch Sh")
@@ -138,12 +134,9 @@ def _critical_values(stated: tuple[sympy.Expr, sympy.Expr, sympy.Expr]) -> Check
 def _first(stated: tuple[sympy.Expr, sympy.Expr, int]) -> Check:
     """(c_1 below a rate, in K = cos(omega pi/2), c_1 above it, the rate)."""
     below, above, border = stated
-    links = [*_branch(below, above), *_no_others(border), ("five rates: " + FLOWN, _flown(below, above, border))]
+    links = [*_branch(below, above), *_no_others(border)]
     # that other flights have no larger c is said in words between the identities: no program decides those sentences
     return every(links, "argued")
-
-
-FLOWN = "the first visible transition below c = 1 that the search finds is at c_1 to 1e-11"
 
 
 def _branch(below: sympy.Expr, above: sympy.Expr) -> list[tuple[str, bool]]:
@@ -239,80 +232,12 @@ def _signs(border: int) -> bool:
     return border % 2 == 1 and {sign(at) for at in left} == {-1} and {sign(at) for at in right} == {1}
 
 
-RATES = ("1.3", "2.3", "2.8", "3.3", "5.2")
-
-
-def _flown(below: sympy.Expr, above: sympy.Expr, border: int) -> bool:
-    """The search of `surface.outline_transitions` on five rates."""
-    for rate in RATES:
-        events = [
-            event
-            for event in transitions(linear(rate, 0, "1/2"), "clearance", ("-0.99", "0.99"), (0, 6.5))
-            if event.visible
-        ]
-        wanted = _value(rate, below, above, border)
-        if not events or wanted is None or abs(events[-1].value - wanted) > 1e-11:
-            return False
-    return True
-
-
-def _value(rate: str, below: sympy.Expr, above: sympy.Expr, border: int) -> float | None:
-    """c_1 of one rate in doubles."""
-    if float(rate) < border:
-        w = sympy.Float(rate, 30)
-        return float(below.subs({K: sympy.cos(w * sympy.pi / 2), omega: w}))
-    with digits_at(30) as mp:
-        at = mp.mpf(rate)
-
-        def gap(h: Any) -> Any:
-            return mp.sin(at * h) * mp.cos(h) - at * mp.cos(at * h) * mp.sin(h)
-
-        low, high = mp.pi / at, min(3 * mp.pi / (2 * at), mp.pi / 2)
-        if gap(low) * gap(high) > 0:
-            return None
-        root = mp.findroot(gap, (low, high), "anderson")
-        return float(above.subs({Cw: sympy.Float(str(mp.cos(at * root)), 30)}))
-
-
 TWO = (
     g * (1 + 2 * u**2) / 3,
     -2 * g / 3,
     -4 * g * (1 - u**2) / 3,
     {1: sympy.Rational(1, 3), -1: sympy.Rational(-1, 3)},
 )
-
-
-# Which visible transition a negative swan of a linear model meets first, on ten models.
-
-MODELS = (
-    ("x", "cos(2*t)"),
-    ("x", "cos(3.3*t)"),
-    ("x + 0.1*xdot", "cos(2.8*t)"),
-    ("x + 0.1*xdot", "cos(3.6*t)"),
-    ("x + 0.3*xdot", "cos(1.5*t)"),
-    ("x + 0.1*xdot", "cos(2.8*t) + 0.2*cos(5.6*t + 1)"),
-    ("x + 0.1*xdot", "cos(3.6*t) + 0.2*cos(7.2*t + 1)"),
-    ("x + 0.2*xdot", "cos(4.4*t) + 0.1*cos(8.8*t + 2)"),
-    ("x + 0.2*xdot", "cos(3.3*t) + 0.15*cos(6.6*t - 1)"),
-    ("x + 0.05*xdot", "cos(2.2*t) + 0.22*cos(4.4*t + 1/2)"),
-)
-REACH = 10
-
-
-@cache
-def first_met(f: str, g: str) -> Transition:
-    """The first visible transition below the highest negative swan over the clearance."""
-    found = transitions(ImpactOscillator(f, g, 0, "1/2"), "clearance", ("-1.2", "1.5"), (-REACH, REACH)).visible
-    swan = max(each.value for each in found if each.kind == "swan, negative")
-    return max((each for each in found if each.value < swan), key=lambda each: each.value)
-
-
-def _kinds(stated: frozenset[str]) -> Check:
-    """The kinds that are met first."""
-    met = {f"x'' + {f} = {g}": first_met(f, g) for f, g in MODELS}
-    kinds = {each.event for each in met.values()}
-    told = ", ".join(f"{each.event} at {each.value:.6f}" for each in met.values())
-    return every([(f"{len(met)} models: {told}", kinds == stated)], "supported")
 
 
 FAMILIES = {
@@ -349,14 +274,6 @@ FAMILIES = {
             (K / (omega**2 - 1), Cw, 3),
             (K / (omega**2 - 1), -Cw, 5),
             (K / (omega**2 - 1), -Cw, 2),
-        ),
-    ),
-    "b:events-met": Encoding(
-        frozenset({"tacnode", "tangency first", "tangency last", "tangency to tangency", "periodic graze"}),
-        _kinds,
-        (
-            frozenset({"tacnode", "tangency first", "tangency last", "periodic graze"}),
-            frozenset({"tacnode", "tangency first", "tangency last", "tangency to tangency", "triple point"}),
         ),
     ),
 }

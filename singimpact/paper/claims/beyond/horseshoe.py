@@ -7,13 +7,11 @@
 from fractions import Fraction
 from functools import cache
 from math import pi
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from singimpact.algebra.certified import Certified
 from singimpact.algebra.numbers import exact
-from singimpact.branches.enclosed_crossing import EnclosedCrossing
 from singimpact.branches.homoclinic import Crossing, homoclinic_points
-from singimpact.branches.horseshoe import Horseshoe
 from singimpact.branches.periodic import periodic
 from singimpact.inputs import InputError
 from singimpact.oscillator.model import Oscillator
@@ -38,34 +36,21 @@ class Stated(NamedTuple):
 
 
 @cache
-def _first(restitution: str) -> Crossing | str:
-    """The homoclinic orbit of fewest impacts, in doubles; or why there is none."""
-    osc = Oscillator("x", "cos(2.8*t)", 0, restitution)
-    saddles = [orbit for orbit in periodic(osc, 1, 1) if orbit.visible and not orbit.stable]
-    if not saddles:
-        return f"r = {restitution}: no (1, 1) orbit is a saddle"
-    found = homoclinic_points(saddles[0], v=1)
-    if not found:
-        return f"r = {restitution}: no crossing of W^u and W^s is found"
-    return found[0]
+def _first(restitution: str) -> Crossing | None:
+    """The homoclinic orbit of fewest impacts, in doubles, of a saddle among the (1, 1) orbits."""
+    orbits = periodic(Oscillator("x", "cos(2.8*t)", 0, restitution), 1, 1)
+    saddles = [orbit for orbit in orbits if orbit.visible and not orbit.stable]
+    return next(iter(homoclinic_points(saddles[0], v=1)), None) if saddles else None
 
 
 @cache
-def _certified(restitution: str) -> EnclosedCrossing | str:
-    """It, proved; or why it is not."""
+def _proved(restitution: str, what: str) -> Any:
+    """Itself with its digits, or the horseshoe beside it, proved; or why it is not."""
     found = _first(restitution)
+    if found is None:
+        return f"r = {restitution}: no crossing of W^u and W^s of a (1, 1) saddle is found"
     try:
-        return found if isinstance(found, str) else found.certified(DIGITS)
-    except InputError as reason:
-        return str(reason)
-
-
-@cache
-def _horseshoe(restitution: str) -> Horseshoe | str:
-    """The horseshoe beside it; or why none is proved."""
-    found = _first(restitution)
-    try:
-        return found if isinstance(found, str) else found.horseshoe()
+        return found.certified(DIGITS) if what == "crossing" else found.horseshoe()
     except InputError as reason:
         return str(reason)
 
@@ -81,7 +66,7 @@ def _is(ball: Certified, text: str, period: float = 0.0) -> bool:
 
 def _crosses(stated: Stated) -> Check:
     """Whether the certified orbit is the stated one."""
-    crossing = _certified(stated.restitution)
+    crossing = _proved(stated.restitution, "crossing")
     if isinstance(crossing, str):
         return Check(False, "certified", crossing, {"fails": crossing})
     period = 2 * pi / 2.8
@@ -128,7 +113,7 @@ def _near(state: tuple[Certified, Certified], saddle: tuple[Certified, Certified
 def _chaotic(stated: tuple[str, tuple[int, int], str]) -> Check:
     """(r, loops, h): loops of these lengths are followed in any order, and the entropy is at least h."""
     restitution, loops, entropy = stated
-    horseshoe = _horseshoe(restitution)
+    horseshoe = _proved(restitution, "horseshoe")
     if isinstance(horseshoe, str):
         return Check(False, "certified", horseshoe, {"fails": horseshoe})
     bound = exact("value", horseshoe.entropy.value) - exact("radius", horseshoe.entropy.radius)

@@ -1,7 +1,5 @@
 """Orbits born at a negative swan: none that recurs within it, and one chattering orbit that starts at A."""
 
-from math import sqrt
-
 import sympy
 
 from singimpact.algebra.certificates import positive_in
@@ -11,14 +9,9 @@ from singimpact.paper.claims.sections.section6_exact import persisting
 from singimpact.paper.claims.verifiers import every, same
 from singimpact.paper.routes import unfolding as model
 from singimpact.paper.routes.unfolding import kappa, r, sigma, t, u
-from singimpact.paper.trials.first_order_feet import BIRTH_RATES, DEPTHS, LIFTS, hop, limit_of
 
 v, s, bend, drop, rate = sympy.symbols("v s A2 dc a_c")  # A2 = |a''|, a_c = |da/dc|
 WINDOW = {sigma: (-5, 5), t: (0, 12), r: (0, 1)}  # of the universal model, in half distances
-NEAR = 0.01  # of a ratio to its law at the smaller c_0 - c
-FALLS = 2.5  # at least, of what a ratio lacks of 1, over a factor 10 in c_0 - c; sqrt(10) at first order in H
-ROUNDING = 1e-8  # of a ratio
-MERGED = 1e-12  # of a period
 
 
 def _rises(stated: sympy.Expr) -> Check:
@@ -70,32 +63,6 @@ def _hop(stated: tuple[sympy.Expr, sympy.Expr, sympy.Expr, sympy.Expr]) -> Check
     )
 
 
-def _orbit(stated: tuple[float, float, float, float]) -> Check:
-    """Laws of the first hit, its speed, the height and the rest (a number of X beside 1) at c_0 - 10^-k."""
-    checks, worst = [], dict[str, str]()
-    for lift in LIFTS:
-        for rate_ in BIRTH_RATES:
-            laws = (*stated[:3], stated[3] + limit_of(rate_))
-            orbits = [hop(lift, rate_, depth) for depth in DEPTHS]
-            parts = [(orbit.first, orbit.speed, orbit.top, orbit.rest) for orbit in orbits]
-            lacks = [[abs(number / law - 1) for number, law in zip(row, laws, strict=True)] for row in parts]
-            near = all(
-                two < max(ROUNDING, NEAR) and two < max(ROUNDING, one / FALLS) for one, two in zip(*lacks, strict=True)
-            )
-            again = all(orbit.period < MERGED and orbit.merged for orbit in orbits)
-            ratios = ", ".join(f"{number / law:.5f}" for number, law in zip(parts[-1], laws, strict=True))
-            checks.append(
-                (
-                    f"{lift.name}, r = {rate_}, c_0 - c = 1e-{DEPTHS[-1]}: ratios {ratios}, released each "
-                    "period, the same from other starts",
-                    near and again,
-                )
-            )
-            if not (near and again):
-                worst = {"model": lift.name, "r": rate_, "ratios": ratios}
-    return every(checks, "supported", witness=lambda: worst)
-
-
 FLIGHT = (s + 1) ** 3 * (3 - s)
 LAWS = sympy.Integer(4), sympy.Rational(8, 3), sympy.Rational(9, 8)
 
@@ -110,10 +77,5 @@ CLAIMS = {
             ((s + 1) ** 2 * (3 - s), *LAWS),
             (FLIGHT, sympy.Integer(3), *LAWS[1:]),
         ),
-    ),
-    "b:onset": Encoding(
-        (4.0, 8 / 3, 9 / 8, 1.0),
-        _orbit,
-        ((3.9, 8 / 3, 9 / 8, 1.0), (4.0, 4 / 3, 9 / 8, 1.0), (4.0, 8 / 3, sqrt(9 / 8), 1.0), (4.0, 8 / 3, 9 / 8, 0.0)),
     ),
 }
