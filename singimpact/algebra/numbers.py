@@ -9,6 +9,7 @@ import math
 import traceback
 import types
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
 from decimal import Decimal
 from fractions import Fraction
 from functools import cache
@@ -139,9 +140,12 @@ def rational_ends(name: str, values: object, accepted: str) -> tuple[Fraction, F
     >>> rational_ends("between", ("0.7", 1), "two rational numbers low < high")
     (Fraction(7, 10), Fraction(1, 1))
     """
-    ends = [rational_number(name, end) for end in values] if isinstance(values, tuple | list | np.ndarray) else []
-    require(len(ends) == 2 and ends[0] < ends[1], name, values, accepted)
-    return ends[0], ends[1]
+    if isinstance(values, tuple | list | np.ndarray) and len(values) == 2:
+        with suppress(InputError):
+            low, high = (rational_number(name, end) for end in values)
+            if low < high:
+                return low, high
+    raise refuse(name, values, accepted)
 
 
 def rational_near(tree: Expression, bits: int) -> Fraction:

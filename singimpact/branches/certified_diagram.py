@@ -22,8 +22,10 @@ from singimpact.algebra.isolated_zeros import SETTINGS as BOXES, Place, zeros_of
 from singimpact.algebra.numbers import Array, rational_ends, sign_of
 from singimpact.algebra.precision import balls_at, series_of_any_length
 from singimpact.branches.clearance_curves import Ball, ClearanceCurve, OrbitOnCurve, Series
+from singimpact.branches.events.graze import GRAZE, INTERIOR_GRAZE
+from singimpact.branches.events.unit_multipliers import FOLD, PERIOD_DOUBLING
 from singimpact.handed_on import flint
-from singimpact.inputs import checked_keywords, refuse, require, whole
+from singimpact.inputs import checked_keywords, require, whole
 from singimpact.oscillator.linear import linear_form
 from singimpact.oscillator.model import Oscillator, require_model
 from singimpact.result import Result
@@ -118,7 +120,7 @@ class CertifiedDiagram(Result):
     def __repr__(self) -> str:
         kinds = [joint.kind for joint in self.joints]
         told = ", ".join(f"{kinds.count(kind)} {kind}" for kind in dict.fromkeys(kinds))
-        left = "complete" if self.complete else f"{len(self.open_parts)} parts open"
+        left = f"{len(self.open_parts)} parts open" if self.open_parts else "complete"
         return f"CertifiedDiagram({len(self.arcs)} arcs; {told}; {left})"
 
 
@@ -218,20 +220,19 @@ def certified_diagram(
     >>> from singimpact.impact_oscillator import linear
     >>> found = certified_diagram(linear("2.8", 0, "0.8"), [(1, 1)], between=("-0.2", "0.2"), v=("0.1", 1))
     >>> found
-    CertifiedDiagram(2 arcs; 1 period-doubling, 2 window; complete)
+    CertifiedDiagram(2 arcs; 2 window, 1 period-doubling; complete)
     >>> print(found.joints[1].clearance, [arc.stable for arc in found.arcs])
-    0.0685756522788391 [True, False]
+    0.0685756522788391 [False, True]
     """
     require_model("osc", osc)
-    listed = isinstance(orbits, tuple | list) and all(np.shape(pair) == (2,) for pair in orbits)
-    require(listed and orbits, "orbits", orbits, "pairs (n, k)")
+    paired = isinstance(orbits, tuple | list) and orbits and all(np.shape(pair) == (2,) for pair in orbits)
+    require(paired, "orbits", orbits, "pairs (n, k)")
     pairs = tuple((whole("n", n, 1, 2), whole("k", k, 1, 1000)) for n, k in orbits)
     ends = rational_ends("between", between, ORDERED), rational_ends("v", v, ORDERED)
     require(ends[1][0] >= 0, "v", v, "two rational numbers 0 <= low < high")
     form = linear_form(osc)
-    sound = form is not None and osc.upper is None and not osc.plastic and not names_in(osc.restitution)
-    if form is None or not sound or len({wave.rate for wave in form.harmonics}) != 1 or not sign_of(form.stiffness):
-        raise refuse("model", osc, ACCEPTED)
+    linear = form is not None and len({wave.rate for wave in form.harmonics}) == 1 and sign_of(form.stiffness)
+    require(linear and not (osc.upper or osc.plastic or names_in(osc.restitution)), "model", osc, ACCEPTED)
     with balls_at(SEARCH.bits), series_of_any_length():
         curves = [ClearanceCurve(osc, pair, SEARCH.bits, sign) for pair in pairs for sign in (1, -1)[: pair[0]]]
         arcs, joints, parts = zip(*(_searched(curve, ends) for curve in curves), strict=True)
@@ -258,7 +259,8 @@ def _searched(
                 for at, stretch in ((index, one), (index + 1, other)):
                     if stretch.kind is not None:
                         joints.setdefault(at, _joint(curve, stretch))
-                arcs.append(_arc(curve, (one, other), stable, (joints.get(index), joints.get(index + 1))))
+                between = float(one.p.mid()), float(other.p.mid())
+                arcs.append(_arc(curve, between, stable, (joints.get(index), joints.get(index + 1))))
     return arcs, [joints[at] for at in sorted(joints)], _open_parts(curve, window, left)
 
 
@@ -268,26 +270,27 @@ def _events(curve: ClearanceCurve, window: _Window) -> list[_Stretch]:
     long = high - low
     along = low - long * BEYOND, high + long * BEYOND
     tests: list[tuple[str, Callable[[OrbitOnCurve], Series]]] = [
-        ("fold", lambda orbit: orbit.c.derivative()),
-        ("period-doubling", lambda orbit: orbit.test(-1)),
+        (FOLD.name, lambda orbit: orbit.c.derivative()),
+        (PERIOD_DOUBLING.name, lambda orbit: orbit.test(-1)),
         *((ENDS, partial(_above, edge, None)) for edge in window.between),
-        *((ENDS if edge > 0 else "graze", partial(_above, edge, i)) for edge in window.v for i in range(curve.n)),
+        *((ENDS if edge > 0 else GRAZE.name, partial(_above, edge, i)) for edge in window.v for i in range(curve.n)),
     ]
     searches = [(kind, zeros_of(_Along(curve, window, test), (along,), SEARCH)) for kind, test in tests]
     end = as_rational(curve.span)
-    for flight in range(curve.n):
-        times = -end * BEYOND, end * (1 + BEYOND)
-        touches = zeros_of(_Touches(curve, window, flight), (along, times), SEARCH, (long * ALONG, end))
-        searches.append(("hidden impact", touches))
+    box, sizes = (along, (-end * BEYOND, end * (1 + BEYOND))), (long * ALONG, end)
+    searches += [
+        (INTERIOR_GRAZE.name, zeros_of(_Touches(curve, window, flight), box, SEARCH, sizes))
+        for flight in range(curve.n)
+    ]
     stretches = [_Stretch(zero[0], kind) for kind, zeros in searches for zero in zeros.found]
     stretches += [_Stretch(curve.balls.interval(*box[0]), None) for _, zeros in searches for box in zeros.undecided]
     merged = list[_Stretch]()
     for stretch in sorted(stretches, key=lambda stretch: float(stretch.p.mid())):
         if any(stretch.p > alike for alike in curve.alike):
             continue
-        if stretch.kind == "fold" and any(stretch.p.overlaps(alike) for alike in curve.alike):
+        if stretch.kind == FOLD.name and any(stretch.p.overlaps(alike) for alike in curve.alike):
             stretch = _Stretch(
-                stretch.p, "period-doubling"
+                stretch.p, PERIOD_DOUBLING.name
             )  # of the orbit of one impact: by symmetry c turns back there
         if merged and merged[-1].p.overlaps(stretch.p):
             stretch = _Stretch(merged.pop().p.union(stretch.p), None)
@@ -335,11 +338,10 @@ def _joint(curve: ClearanceCurve, stretch: _Stretch) -> Joint:
 
 
 def _arc(
-    curve: ClearanceCurve, stretches: tuple[_Stretch, _Stretch], stable: bool, ends: tuple[Joint | None, Joint | None]
+    curve: ClearanceCurve, between: tuple[float, float], stable: bool, ends: tuple[Joint | None, Joint | None]
 ) -> Arc:
     rows = []
-    one, other = (float(stretch.p.mid()) for stretch in stretches)
-    for p in np.linspace(one, other, POINTS).tolist():
+    for p in np.linspace(*between, POINTS).tolist():
         orbit = curve.at(flint.arb(p))
         assert orbit is not None
         phases = [np.mod(float(curve.phase(launch)), float(curve.period)) for launch in orbit.launches]

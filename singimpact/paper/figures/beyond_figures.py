@@ -16,6 +16,7 @@ import sympy
 
 from singimpact.algebra.numbers import Array, as_float
 from singimpact.branches.certified_diagram import certified_diagram
+from singimpact.branches.events import KINDS
 from singimpact.dynamics.orbit import orbit
 from singimpact.dynamics.threshold import threshold
 from singimpact.dynamics.unfolded_swan import swan_configuration
@@ -369,32 +370,24 @@ def figure_B9() -> Picture:
 
 # B10: all orbits of one and two impacts of an oscillator, over the clearance.
 
-ALL_OF = ("2.8", "0", "0.8"), ("-0.6", "1.8"), (0, 4)  # of x'' + x = cos(omega t): omega, c, r; the window of c and v
-MARKS = {
-    "fold": ("gamma", "fold"),
-    "period-doubling": ("crossing", "period doubling"),
-    "graze": ("rest", "graze, or edge of the window"),
-    "window": ("rest", "graze, or edge of the window"),
-    "hidden impact": ("orbit", "another flight touches the wall"),
-}
+PENS_OF_EVENTS = "gamma", "crossing", "axis", "axis", "rest", "orbit"  # in the order of `KINDS`
 
 
 def figure_B10() -> Picture:
     """Velocities after the impacts of every orbit, over the clearance, and the places where orbits change."""
-    numbers, between, v = ALL_OF
-    model = linear(*numbers)
-    diagram = certified_diagram(model, between=between, v=v)
+    model = linear("2.8", 0, "0.8")
+    diagram = certified_diagram(model, between=("-0.6", "1.8"), v=(0, 4))
     lines = list[Line]()
     for arc in diagram.arcs:
         pen = f"({arc.n}, {arc.k}) orbits, {'stable' if arc.stable else 'unstable'}"
         lines += [Line(np.stack([arc.clearance, row], axis=1), pen) for row in arc.v.T]
+    looks = {kind.name: (pen, kind.word) for kind, pen in zip(KINDS, PENS_OF_EVENTS, strict=False)}
     for joint in diagram.joints:
-        pen, words = MARKS[joint.kind]
-        dots = [[float(joint.clearance.value), float(speed.value)] for speed in joint.v]
-        lines += [Line(np.array([dot]), pen, joint.kind, beads=True, words=words) for dot in dots]
-    for gap in diagram.open_parts:
-        middle = np.array([[sum(gap.between) / 2, sum(gap.v) / 2]])
-        lines.append(Line(middle, "manifold", "left open", beads=True, words="left open"))
+        pen, words = looks.get(joint.kind, ("axis", "edge of the window"))
+        dots = [np.array([[joint.clearance.value, speed.value]], float) for speed in joint.v]
+        lines += [Line(dot, pen, joint.kind, beads=True, words=words) for dot in dots]
+    middles = [np.array([[sum(gap.between) / 2, sum(gap.v) / 2]]) for gap in diagram.open_parts]
+    lines += [Line(dot, "manifold", "left open", beads=True, words="left open") for dot in middles]
     panels = [
         Panel(((-0.7, 1.9), (-0.1, 3.6)), "$c$", "$v$", "(a) all orbits", lines),
         Panel(((-0.2, 0.12), (-0.015, 0.48)), "$c$", "$v$", "(b) the orbits near grazing", lines),
