@@ -19,11 +19,10 @@ from singimpact.branches.border_digits import in_digits
 from singimpact.branches.branch import interval
 from singimpact.branches.cascade import Cascade, cascade
 from singimpact.branches.orbits import Notes
-from singimpact.branches.resting import Released, Releases, Return
-from singimpact.dynamics.long_run import lift_offs
+from singimpact.branches.resting import Released, Releases, Return, clock
 from singimpact.dynamics.threshold import threshold
 from singimpact.flights.impact_map import checked_digits
-from singimpact.inputs import InputError, checked_keywords, refuse, require, whole
+from singimpact.inputs import InputError, checked_keywords, require, whole
 from singimpact.oscillator.model import Oscillator, require_rebound
 from singimpact.oscillator.moving_number import RESTITUTION, value_of, with_number
 from singimpact.result import Result, Results
@@ -66,7 +65,7 @@ class BorderOrbit(Result):
     certified : a value with a radius in which a border orbit is proved to be; None without digits, and where balls do
         not decide. For analytic models whose restitution is a number.
     release, end : the zeros of a_c at which it begins and ends. period : from one to the other, in periods of the
-        forcing: a whole number where both are one zero.
+        forcing: a whole number where both are one zero; nan without a period.
     tau, v : its first state after which a_c presses up to the end. slope : d(v - gamma)/d(parameter) there.
     side : "above" where chatter completes for larger values of the parameter, "below" for smaller ones.
     status : `hit`; `unresolved` where the fate of the orbit changes and v is not seen to be on gamma.
@@ -106,7 +105,7 @@ class BorderOrbit(Result):
             "certified": None if self.certified is None else self.certified.as_dict(),
             "release": self.release,
             "end": self.end,
-            "periods": self.period,
+            "periods": self.period if np.isfinite(self.period) else None,
             "tau": self.tau,
             "v": self.v,
             "chatter_completes": self.side,
@@ -124,8 +123,9 @@ class BorderOrbit(Result):
         where = f"{self.over} = {self.value_text} +- {float(self.error):.1e}"
         if self.certified is not None:
             where += " (certified)"
-        periods = "one period" if self.period == 1 else f"{self.period:.9g} periods"
-        back = f"released at tau = {self.release:.9g}, back on gamma after {periods}"
+        later = "one period" if self.period == 1 else f"{self.period:.9g} periods"
+        later = f"the time {self.end - self.release:.9g}" if self.oscillator.period is None else later
+        back = f"released at tau = {self.release:.9g}, back on gamma after {later}"
         if self.status != Status.hit:
             return f"<no border orbit is resolved at {where}: {back}>"
         return f"<border orbit at {where}: {back}; chatter completes {self.side}>"
@@ -160,8 +160,9 @@ def border_orbits(
 
     Parameters
     ----------
-    osc : a model with a period, r < 1. over : the number that is varied: "clearance", "restitution", a parameter, or
-        another that `with_number` puts in. between : its ends; about the model's value without them.
+    osc : r < 1, with a period, or with a polynomial g: then all later zeros are looked at.
+    over : the number that is varied: "clearance", "restitution", a parameter, or another that `with_number` puts in.
+    between : its ends; about the model's value without them.
     digits : decimal digits of the number, 16 or more, which is certified where the restitution is a number.
     periods : of the forcing, within which the orbit returns.
     points : values at which orbits are flown before the places between them are refined.
@@ -188,12 +189,13 @@ def border_orbits(
     require(isinstance(osc, Oscillator), "osc", osc, "an ImpactOscillator")
     require_rebound(osc, "a border orbit, which ends on gamma,")
     osc = with_number(osc, over)
-    if osc.period is None:
-        raise refuse("model", osc, "one with a period: its released orbit returns to the same zeros of a_c")
+    releases = Releases(osc, over, whole("periods", periods, 1, 1000))
+    returns = osc.period is not None or len(releases.phases(osc)) > 1
+    require(returns, "model", osc, "one with a period, or with a later zero where a_c rises, to which orbits can come")
     low, high = _ends(osc, over, between)
     digits = None if digits is None else max(checked_digits(digits), SETTINGS.digits)
     whole("points", points, 2, 10**6)
-    search = _Search(Releases(osc, over, whole("periods", periods, 1, 1000)), np.linspace(low, high, points).tolist())
+    search = _Search(releases, np.linspace(low, high, points).tolist())
     search.scan()
     orbits = search.orbits()
     if digits is not None:
@@ -225,8 +227,8 @@ class _Search:
         last: tuple[float, tuple[float, ...], list[Released]] | None = None
         for value in self.values:
             model = self.releases.model(value)
-            phases = lift_offs(model)
-            if last is not None and len(phases) == len(last[1]):
+            phases = self.releases.phases(model)
+            if model.period is not None and last is not None and len(phases) == len(last[1]):
                 phases = _aligned(phases, last[1], as_float(model.period))
             here = value, phases, [self.releases.orbit(model, phases, index) for index in range(len(phases))]
             if last is not None:
@@ -241,7 +243,8 @@ class _Search:
                 "not searched there"
             )
             return
-        for index in range(len(one[1])):
+        # after the last zero of a polynomial there is none to come back to
+        for index in range(len(one[1]) - (self.releases.osc.period is None)):
             self._piece(index, one[1], (one[0], one[2][index]), (other[0], other[2][index]))
 
     def _piece(
@@ -291,10 +294,11 @@ class _Search:
         """Notes on the list."""
         over, periods = self.releases.over, self.releases.periods
         many = f"{periods} periods" if periods > 1 else "one period"
+        later = f"returns that take more than {many} are not looked for: periods= looks further"
         return (
             f"looked for at {points} values of {over}, {self.spacing:.3g} apart: two border orbits between neighbours "
             "may be missed",
-            f"returns that take more than {many} are not looked for: periods= looks further",
+            *([] if self.releases.osc.period is None else [later]),
             *self.notes.sentences,
         )
 
@@ -317,7 +321,6 @@ def _border(returned: Return, spacing: float) -> BorderOrbit:
     """A change of fate with its state next to gamma."""
     model = returned.releases.model(returned.value)
     release, end = returned.ends(model)
-    period = as_float(model.period)
     notes: list[str] = []
     gap, tau, v, error = _gap(returned, returned.value)
     width = SETTINGS.width * spacing
@@ -335,7 +338,7 @@ def _border(returned: Return, spacing: float) -> BorderOrbit:
         None,
         release,
         end,
-        float(round((end - release) / period, 12)),
+        float(round((end - release) / clock(model), 12)) if model.period is not None else np.nan,
         tau,
         v,
         float(slope),

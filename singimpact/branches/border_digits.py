@@ -17,10 +17,10 @@ from typing import Any, NamedTuple
 from singimpact.algebra.balls import BITS_A_DIGIT, Balls, as_rational
 from singimpact.algebra.certified import Certified, from_ends
 from singimpact.algebra.expressions import Number
-from singimpact.algebra.numbers import as_float, exact
+from singimpact.algebra.numbers import exact
 from singimpact.algebra.precision import Ladder, balls_at, digits_at, for_user
 from singimpact.algebra.solving import newton_in_balls
-from singimpact.branches.resting import Return
+from singimpact.branches.resting import Return, clock
 from singimpact.contact.zero_ahead import ContactZero, next_zero
 from singimpact.dynamics.enclosed import enclosable, end_of_gamma, searched, side
 from singimpact.flights.enclosures.analytic_flow import AnalyticFlow
@@ -120,7 +120,7 @@ class DigitOrbits:
 
     def _zeros(self, model: Oscillator) -> tuple[ContactZero, ContactZero]:
         """The zeros of a_c where the orbit begins and ends."""
-        before = SETTINGS.before * as_float(model.period)
+        before = SETTINGS.before * clock(model)
         found = [next_zero(model, Number(Fraction(time - before))).zero for time in self.found.ends(model)]
         if found[0] is None or found[1] is None or found[1].order != 1:
             raise ArithmeticError("a zero of a_c is not isolated")

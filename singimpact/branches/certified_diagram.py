@@ -37,7 +37,6 @@ DIGITS = 15
 POINTS = 33  # of an arc that are computed
 PIECES = 2**12  # of a flight, before it is open whether it is first to hit
 ORDERED = "two rational numbers low < high"
-ENDS = "window"  # kind of the places where a curve enters the window or leaves it
 ACCEPTED = "a linear model with one harmonic, stiffness that is not 0, a number > 0 for restitution and one wall"
 
 
@@ -272,8 +271,12 @@ def _events(curve: ClearanceCurve, window: _Window) -> list[_Stretch]:
     tests: list[tuple[str, Callable[[OrbitOnCurve], Series]]] = [
         (FOLD.name, lambda orbit: orbit.c.derivative()),
         (PERIOD_DOUBLING.name, lambda orbit: orbit.test(-1)),
-        *((ENDS, partial(_above, edge, None)) for edge in window.between),
-        *((ENDS if edge > 0 else GRAZE.name, partial(_above, edge, i)) for edge in window.v for i in range(curve.n)),
+        *(("window", partial(_above, edge, None)) for edge in window.between),
+        *(
+            ("window" if edge > 0 else GRAZE.name, partial(_above, edge, i))
+            for edge in window.v
+            for i in range(curve.n)
+        ),
     ]
     searches = [(kind, zeros_of(_Along(curve, window, test), (along,), SEARCH)) for kind, test in tests]
     end = as_rational(curve.span)

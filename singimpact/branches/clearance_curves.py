@@ -51,7 +51,7 @@ class Motion:
         self.kept: dict[Any, Any] = {}
 
     def __call__(self, t: Ball) -> Ball:
-        """The matrix over a ball: a Taylor polynomial about the middle, and the rest over the ball."""
+        # the matrix over a ball: a Taylor polynomial about the middle, and the rest over the ball
         key = t.mid().man_exp(), t.rad().man_exp()
         if key not in self.kept:
             off = t - t.mid()
@@ -72,7 +72,7 @@ class Motion:
 
 
 def combined(row: list[Any], state: State) -> Series:
-    """The sum of products."""
+    # the sum of products
     return sum(map(mul, row, state))
 
 
@@ -121,7 +121,7 @@ class OrbitOnCurve:
         return a * p + b * r + c * q + d * s, scale
 
     def _slope(self, launch: State, flow: list[list[Series]], speed: Series) -> list[list[Series]]:
-        """The derivative of the impact map, times x' before the impact: the flight gets longer by -h / x'."""
+        # the derivative of the impact map, times x' before the impact: the flight gets longer by -h / x'
         r, rate = self.curve.r, self.curve.rate
         A = self.curve.motion.A.table()
         force = combined(flow[1], tuple(combined(row, launch) for row in A))
@@ -250,11 +250,9 @@ class ClearanceCurve:
         return [part * size for part in solution]
 
     def _solution(self, p: Ball) -> list[Series]:
-        """A solution of the four equations: their minors.
-
-        All minors vanish with p, and where both flights are alike: near there they are divided by the distance. What
-        is left has the Taylor coefficients of the next order, over a ball that reaches to the zero.
-        """
+        # A solution of the four equations: their minors.
+        # All minors vanish with p, and where both flights are alike: near there they are divided by the distance. What
+        # is left has the Taylor coefficients of the next order, over a ball that reaches to the zero.
         for zero, side in [(flint.arb(0), 1), *((alike, -1) for alike in self.alike)]:
             gap = side * (p - zero)
             if abs(gap).lower() <= NEAR * p.rad():

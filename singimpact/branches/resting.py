@@ -8,6 +8,8 @@ import numpy as np
 from singimpact.algebra.numbers import Array, as_float
 from singimpact.branches.closing import FreeClosing, lowest
 from singimpact.branches.orbits import Notes, PeriodicOrbit, PeriodicOrbits, chatter_orbit
+from singimpact.contact.contact import acceleration as a_c
+from singimpact.contact.points import tangency_points, window
 from singimpact.dynamics.chatter import ENDING, chatter_left
 from singimpact.dynamics.lift_off import release, turns_between
 from singimpact.dynamics.long_run import lift_offs
@@ -238,7 +240,8 @@ class Releases:
 
     Parameters
     ----------
-    osc : a model with a period. over : the number. periods : of the forcing, after which an orbit is followed no more.
+    osc : a model with a period, or whose g is a polynomial. over : the number.
+    periods : of the forcing, after which an orbit is followed no more.
     """
 
     osc: Oscillator
@@ -248,6 +251,10 @@ class Releases:
     def model(self, value: Any) -> Oscillator:
         """The model at a value of the number: a double or a Fraction, taken exactly."""
         return self.osc.replace(**{self.over: value})
+
+    def phases(self, model: Oscillator) -> tuple[float, ...]:
+        """The zeros at which a_c rises, in a period or all of a polynomial."""
+        return tuple(point.tau for point in tangency_points(model) if point.kind == "gamma")
 
     def followed(self, model: Oscillator, phases: tuple[float, ...]) -> tuple[float, ...]:
         """The phases at which a_c rises through zero, next to those of a model nearby; nan where one is not found."""
@@ -267,7 +274,7 @@ class Releases:
         (1, True)
         """
         model = self.model(value)
-        return self.orbit(model, lift_offs(model) if near is None else self.followed(model, near), index)
+        return self.orbit(model, self.phases(model) if near is None else self.followed(model, near), index)
 
     def orbit(self, model: Oscillator, phases: tuple[float, ...], index: int) -> Released:
         """The orbit released at phases[index]."""
@@ -275,6 +282,8 @@ class Releases:
 
     def zeros(self, model: Oscillator, phases: tuple[float, ...], index: int) -> Array:
         """The zeros at which a_c rises after phases[index], in order, as far as an orbit is followed."""
+        if model.period is None:
+            return np.array(phases[index + 1 :])
         start, period = phases[index], as_float(model.period)
         turned = np.add.outer(np.arange(self.periods + 2) * period, np.array(phases)).ravel()
         if not np.isfinite(turned).all():
@@ -284,9 +293,14 @@ class Releases:
         return np.sort(turned[(turned > start + gap) & (turned < start + self.periods * period + gap)])
 
 
+def clock(model: Oscillator) -> float:
+    """The period of the forcing; of a polynomial a length within which all zeros of a_c lie."""
+    return 2 * float(window(model, a_c(model))[1]) if model.period is None else as_float(model.period)
+
+
 def _rising(model: Oscillator, near: float) -> float:
     """The double from which the mass lifts off, next to a phase; nan where Newton's method does not find it."""
-    period, at = as_float(model.period), near
+    period, at = clock(model), near
     for _ in range(SETTINGS.steps):
         value, slope = (float(acceleration(model, np.array([at]), order)[0]) for order in (0, 1))
         if not slope > 0 or not abs(at - near) < period / 4:

@@ -234,8 +234,9 @@ def _of_event(event: EnclosedEvent) -> Certificate:
 
 def _of_border(orbit: BorderOrbit) -> Certificate:
     """The certificate of a border orbit."""
-    if orbit.certified is None:
-        raise InputError(f"the border orbit is not certified: {'; '.join(orbit.notes) or 'ask for digits='}")
+    if orbit.certified is None or orbit.oscillator.period is None:
+        why = "is not certified" if orbit.certified is None else "of a model without a period has no file"
+        raise InputError(f"the border orbit {why}: {'; '.join(orbit.notes) or 'ask for digits= and a period'}")
     statement = {
         "over": orbit.over,
         "parameter": orbit.certified.as_dict(),

@@ -214,15 +214,13 @@ B8 = (
 def figure_B7() -> Picture:
     """A lens opens on the arc of a swan, and the flight released at one tangency point is at rest at another."""
     model = linear("2.8", 0, "0.8")
-    panels, facts = _rows(model, B7)
-    return picture_of("B7", str(model), panels, facts)
+    return picture_of("B7", str(model), *_rows(model, B7))
 
 
 def figure_B8() -> Picture:
     """A triple point, and the two tangencies."""
     model = two_waves()
-    panels, facts = _rows(model, B8)
-    return picture_of("B8", str(model), panels, facts)
+    return picture_of("B8", str(model), *_rows(model, B8))
 
 
 def _rows(model: Oscillator, rows: tuple[Row, ...]) -> tuple[list[Panel], dict[str, float]]:
@@ -241,15 +239,16 @@ def _rows(model: Oscillator, rows: tuple[Row, ...]) -> tuple[list[Panel], dict[s
 
 
 def _transition(model: Oscillator, row: Row) -> Transition:
-    ends = row.value - 1e-4, row.value + 1e-4
-    (found,) = transitions(model, "clearance", ends, (-row.reach, row.reach), row.kind).visible
+    ends, rests = (row.value - 1e-4, row.value + 1e-4), (-row.reach, row.reach)
+    (found,) = transitions(model, "clearance", ends, rests, row.kind).visible
     return found
 
 
 def _surface(model: Oscillator, clearance: float, tau: tuple[float, float], row: Row) -> ImpactSurface:
     """The surface in a window whose rests can be reached from the launches shown."""
-    window = (tau[0], tau[1] + row.long), (-row.long, 0.01)
-    return ImpactSurface(model.replace(clearance=clearance), *window, 1 / row.fine)
+    return ImpactSurface(
+        model.replace(clearance=clearance), (tau[0], tau[1] + row.long), (-row.long, 0.01), 1 / row.fine
+    )
 
 
 def _ends(surface: ImpactSurface, tau: tuple[float, float]) -> int:
@@ -332,7 +331,6 @@ def on_gamma(start: tuple[str, str, int], power: Fraction) -> tuple[float, list[
 
 def figure_B9() -> Picture:
     """The exponent against q, and what gamma has beyond the first term against the second term."""
-    facts = dict[str, float]()
     powers = np.linspace(0, LARGEST, 121)
     first = [
         Line(
@@ -353,19 +351,17 @@ def figure_B9() -> Picture:
             loss, points = on_gamma(start, power)
             w = (k * loss) ** (1 / (1 - float(power)))
             rows = [(np.log10(g * v / h ** (start[2] + 1)), np.log10(v / (w * h**n) - 1)) for h, v in points]
-            (far, fast), (near, slow) = points
-            slope = float(np.log(fast / slow) / np.log(far / near))
-            marks = [np.array([[float(power), slope]]), *(np.array([row]) for row in rows)]
+            ((run, rise),) = np.diff(np.log(points), axis=0)
+            marks = [np.array([[float(power), rise / run]]), *(np.array([row]) for row in rows)]
             for lines, mark in zip((first, second, second), marks, strict=True):
                 lines.append(Line(mark, "crossing", "true orbits", beads=True, words="thresholds of true orbits"))
-            facts[f"{start[1]}, q = {power}"] = slope - n
     panels = [
         Panel(((0.0, LARGEST), (1.5, 7.0)), "$q$", r"exponent of $|\sigma|$", "(a) the exponent", first),
         Panel(
             ((-4.0, -1.0), (-4.0, -1.0)), r"$\log_{10} GP$", r"$\log_{10}$ of the excess", "(b) the second term", second
         ),
     ]
-    return picture_of("B9", "; ".join(f"x'' + {f} = {g}" for f, g, _ in STARTS), panels, facts)
+    return picture_of("B9", "; ".join(f"x'' + {f} = {g}" for f, g, _ in STARTS), panels)
 
 
 # B10: all orbits of one and two impacts of an oscillator, over the clearance.
@@ -386,8 +382,10 @@ def figure_B10() -> Picture:
         pen, words = looks.get(joint.kind, ("axis", "edge of the window"))
         dots = [np.array([[joint.clearance.value, speed.value]], float) for speed in joint.v]
         lines += [Line(dot, pen, joint.kind, beads=True, words=words) for dot in dots]
-    middles = [np.array([[sum(gap.between) / 2, sum(gap.v) / 2]]) for gap in diagram.open_parts]
-    lines += [Line(dot, "manifold", "left open", beads=True, words="left open") for dot in middles]
+    lines += [
+        Line(np.array([[sum(gap.between) / 2, sum(gap.v) / 2]]), "manifold", beads=True, words="left open")
+        for gap in diagram.open_parts
+    ]
     panels = [
         Panel(((-0.7, 1.9), (-0.1, 3.6)), "$c$", "$v$", "(a) all orbits", lines),
         Panel(((-0.2, 0.12), (-0.015, 0.48)), "$c$", "$v$", "(b) the orbits near grazing", lines),

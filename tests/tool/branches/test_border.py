@@ -456,3 +456,91 @@ def test_command(singimpact, tmp_path):
     none = singimpact(*asked[:7], "--from", "0.7", "--to", "0.8", "--points", "3", "-o", tmp_path / "none.png")
     assert none.exit_code == 2
     assert "no border orbit to draw" in none.stderr
+
+
+# ---- polynomials, whose orbits come to a later zero: at a contact of order three
+
+
+def cubic(p, r, q="-0.25"):
+    return si.ImpactOscillator("0", f"t**3 - {p}*t + q", 0, r, {"q": q})
+
+
+def falls_short(q, r):
+    """Whether chatter of the orbit released at the first zero of t^3 - t + q completes before the third, by roots."""
+    a = np.polynomial.Polynomial([q, -1, 0, 1])
+    first, _, third = sorted(a.roots().real)
+    tau, v = first, 0.0
+    while True:
+        rise = a(np.polynomial.Polynomial([tau, 1])).integ(2) + np.polynomial.Polynomial([0, v])
+        roots = rise.roots()
+        hits = roots[(np.abs(roots.imag) < 1e-7) & (roots.real > 1e-3 * (third - tau) if v == 0 else roots.real > 1e-9)]
+        if not hits.size or tau + hits.real.min() > third:
+            return False
+        flown = hits.real.min()
+        tau, v = tau + flown, -r * float(rise.deriv()(flown))
+        # what is left of the chatter under a constant push as strong as that here, where the push gets weaker
+        if 2 * v / (-a(tau) * (1 - r)) < 1e-2 * (third - tau):
+            return True
+
+
+@pytest.mark.parametrize(
+    ("r", "kappa"),
+    [
+        ("0.1", 0.163343),
+        ("0.2", 0.184898),
+        ("0.3", 0.205491),
+        ("0.5", 0.247345775310),
+        ("0.8", 0.318475),
+        ("0.95", 0.363684),
+    ],
+)
+def test_a_border_orbit_between_the_swans_of_a_contact_of_order_three(r, kappa):
+    """From the first zero to gamma of the third; the witness flies polynomials and finds their roots by eigenvalues."""
+    (found,) = si.border_orbits(cubic(1, r), "q", (-0.38, -0.13), points=5)
+    assert abs(found.parameter + kappa) < 2e-6
+    assert found.side == "below"
+    assert np.isnan(found.period)
+    assert found.as_dict()["periods"] is None
+    low, high = -0.38, -0.13
+    for _ in range(30):
+        middle = (low + high) / 2
+        low, high = (middle, high) if falls_short(middle, float(r)) else (low, middle)
+    assert abs(found.parameter - low) < 1e-7
+    assert f"back on gamma after the time {found.end - found.release:.9g}" in repr(found)
+
+
+def test_the_coefficient_of_its_curve_does_not_depend_on_the_scale():
+    """q = kappa |p|^(3/2), to 25 digits and certified."""
+    (one,) = si.border_orbits(cubic(1, "1/2"), "q", (-0.26, -0.24), points=3, digits=25)
+    (four,) = si.border_orbits(cubic(4, "1/2", "-2"), "q", (-2.08, -1.92), points=3, digits=25)
+    with mpmath.workdps(40):
+        apart = 8 * one.certified.value - four.certified.value
+        assert abs(apart) <= 8 * one.certified.radius + four.certified.radius
+    assert one.certified.contains(Fraction("-0.2473457753104248057909067350"))
+    assert not one.certified.contains(Fraction("-0.2473457753104248057909167350"))
+
+
+def test_without_rebound_it_ends_at_a_closed_form():
+    """The hop lands on the third zero for q = -56/57^(3/2); near r = 0 the distance is like sqrt(r)."""
+    limit = -56 / 57**1.5
+    off = [
+        si.border_orbits(cubic(1, repr(r)), "q", (-0.16, -0.129), points=3)[0].parameter - limit for r in (1e-4, 1e-6)
+    ]
+    assert off[0] < off[1] < 0
+    assert off[0] / off[1] == pytest.approx(10, rel=0.05)
+
+
+def test_its_cascade_shrinks_by_mu():
+    (found,) = si.border_orbits(cubic(1, "1/2"), "q", (-0.26, -0.24), points=3)
+    assert found.cascade.limit[0] == pytest.approx(float(si.fixed_points.tangency("1/2").mu.value), rel=1e-6)
+
+
+def test_a_file_of_it_is_refused():
+    (found,) = si.border_orbits(cubic(1, "1/2"), "q", (-0.26, -0.24), points=3, digits=16)
+    with pytest.raises(InputError, match="the border orbit of a model without a period has no file"):
+        si.certify(found)
+
+
+def test_other_models_without_a_period_are_refused():
+    with pytest.raises(InputError, match="give period="):
+        si.border_orbits(si.ImpactOscillator("0", "exp(t) - 2", 0, "1/2"), "clearance", (0, 1))
