@@ -535,6 +535,47 @@ def test_its_cascade_shrinks_by_mu():
     assert found.cascade.limit[0] == pytest.approx(float(si.fixed_points.tangency("1/2").mu.value), rel=1e-6)
 
 
+def side_for_all(q, low, high):
+    """The fate of the orbit of q, for every r from low to high: -1 where chatter completes, 1 where it passes."""
+    osc = cubic(1, (low + high) / 2, str(q))
+    first, _, third = sorted(np.roots([1, 0, -1, float(q)]).real.tolist())
+    with balls_at(128):
+        flow = AnalyticFlow(osc, 128, ("restitution", Balls(128).interval(low, high)))
+        return border_digits._fate(flow, (first, third), 1)
+
+
+def between(low, high, kappa, shares=(1, Fraction(7, 10), Fraction(1, 2))):
+    """Whether for every r from low to high a border orbit is shown between two values of q; kappa falls with r."""
+    ends = {-1: kappa(high), 1: kappa(low)}
+    return all(
+        any(side_for_all(at + side * share * Fraction(1, 50), low, high) == side for share in shares)
+        for side, at in ends.items()
+    )
+
+
+@pytest.mark.slow
+def test_for_every_restitution_of_an_interval_there_is_one():
+    """Pieces of r: at one q all orbits of a piece fall short, at another all pass, so between them each has its own."""
+
+    @cache
+    def kappa(r):
+        (found,) = si.border_orbits(cubic(1, r), "q", (-0.384, -0.13), points=5)
+        return Fraction(found.parameter).limit_denominator(10**6)
+
+    pieces, covered = [(Fraction(1, 20), Fraction(3, 5))], Fraction(1, 20)
+    while pieces:
+        low, high = pieces.pop()
+        if high - low < Fraction(1, 50) and between(low, high, kappa):
+            assert low == covered
+            covered = high
+        else:
+            assert high - low > Fraction(1, 5000)
+            pieces += [((low + high) / 2, high), (low, (low + high) / 2)]
+    assert covered == Fraction(3, 5)
+    # and not at the values of another restitution
+    assert not between(Fraction(2, 5), Fraction(403, 1000), lambda r: kappa(r) + Fraction(1, 20))
+
+
 def test_a_file_of_it_is_refused():
     (found,) = si.border_orbits(cubic(1, "1/2"), "q", (-0.26, -0.24), points=3, digits=16)
     with pytest.raises(InputError, match="the border orbit of a model without a period has no file"):
