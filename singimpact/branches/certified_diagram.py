@@ -310,7 +310,7 @@ def _stable(orbit: OrbitOnCurve) -> bool | None:
     tests = [orbit.test(multiplier)[0] / orbit.traced[1][0] for multiplier in (1, -1)]
     if orbit.curve.determinant < 1 and all(test > 0 for test in tests):
         return True
-    return False if orbit.curve.determinant > 1 or any(test < 0 for test in tests) else None
+    return False if orbit.curve.determinant >= 1 or any(test < 0 for test in tests) else None
 
 
 def _visible(orbit: OrbitOnCurve) -> bool | None:

@@ -149,3 +149,11 @@ def test_a_wrong_motion_gives_other_joints(monkeypatch, diagram):
 def test_refusals(model, values, sentence):
     with pytest.raises(InputError, match=sentence):
         si.certified_diagram(model, **({"between": (0, 1), "v": (0, 1)} | values))
+
+
+def test_without_losses_no_orbit_attracts():
+    """Multipliers have the product 1: the orbits are there, and none is stable."""
+    found = si.certified_diagram(si.linear("2.8", 0, 1), [(1, 1)], between=("-0.2", "0.3"), v=("0.05", 2))
+    assert found.complete
+    assert found.arcs
+    assert not any(arc.stable for arc in found.arcs)
