@@ -151,9 +151,15 @@ def test_refusals(model, values, sentence):
         si.certified_diagram(model, **({"between": (0, 1), "v": (0, 1)} | values))
 
 
-def test_without_losses_no_orbit_attracts():
-    """Multipliers have the product 1: the orbits are there, and none is stable."""
-    found = si.certified_diagram(si.linear("2.8", 0, 1), [(1, 1)], between=("-0.2", "0.3"), v=("0.05", 2))
+def test_where_the_motion_gains_energy_no_orbit_attracts():
+    """Elastic impacts and negative damping: the multipliers have a product above 1."""
+    model = si.linear("2.8", 0, 1, damping="-0.02")
+    found = si.certified_diagram(model, [(1, 1)], between=("-0.2", "0.3"), v=("0.05", 2))
     assert found.complete
     assert found.arcs
     assert not any(arc.stable for arc in found.arcs)
+
+
+def test_elastic_impacts_without_damping_leave_one_impact_undetermined():
+    with pytest.raises(InputError, match="do not give v and c: give other pairs"):
+        si.certified_diagram(si.linear("2.8", 0, 1), [(1, 1)], **WINDOW)
