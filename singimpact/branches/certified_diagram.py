@@ -124,25 +124,25 @@ class CertifiedDiagram(Result):
 
 
 class _Window(NamedTuple):
-    # Where orbits are looked for
+    # where orbits are looked for
 
     between: tuple[Ball, Ball]
     v: tuple[Ball, Ball]
 
     def misses(self, orbit: OrbitOnCurve) -> bool:
-        # Whether every orbit over a ball is outside
+        # whether every orbit over a ball is outside
         sides = [(orbit.c[0], self.between), *((v[0], self.v) for v in orbit.v)]
         return any(value < low or value > high for value, (low, high) in sides)
 
     def holds(self, orbit: OrbitOnCurve) -> bool:
-        # Whether every orbit over a ball is inside
+        # whether every orbit over a ball is inside
         sides = [(orbit.c[0], self.between), *((v[0], self.v) for v in orbit.v)]
         return all(low < value < high for value, (low, high) in sides)
 
 
 @dataclass(frozen=True)
 class _Along:
-    # Zeros of a function of p in the window: a `System`
+    # zeros of a function of p in the window: a `System`
 
     curve: ClearanceCurve
     window: _Window
@@ -159,7 +159,7 @@ class _Along:
 
 @dataclass(frozen=True)
 class _Touches:
-    # Zeros (p, t) of the height of a flight and of its rate, t after the launch: a `System`
+    # zeros (p, t) of the height of a flight and of its rate, t after the launch: a `System`
 
     curve: ClearanceCurve
     window: _Window
@@ -241,7 +241,7 @@ def certified_diagram(
 def _searched(
     curve: ClearanceCurve, ends: Sequence[tuple[Fraction, Fraction]]
 ) -> tuple[list[Arc], list[Joint], list[OpenPart]]:
-    # The arcs of a curve, their joints, and what is open
+    # the arcs of a curve, their joints, and what is open
     window = _Window(*((curve.balls.rational(low), curve.balls.rational(high)) for low, high in ends))
     stretches = _events(curve, window)
     arcs, joints = list[Arc](), dict[int, Joint]()
@@ -264,7 +264,7 @@ def _searched(
 
 
 def _events(curve: ClearanceCurve, window: _Window) -> list[_Stretch]:
-    # All events of a curve in the window, in the order of p; what overlaps is not decided
+    # all events of a curve in the window, in the order of p; what overlaps is not decided
     low, high = (Fraction(end) for end in curve.ends)
     long = high - low
     along = low - long * BEYOND, high + long * BEYOND
@@ -292,10 +292,10 @@ def _events(curve: ClearanceCurve, window: _Window) -> list[_Stretch]:
         if any(stretch.p > alike for alike in curve.alike):
             continue
         if stretch.kind == FOLD.name and any(stretch.p.overlaps(alike) for alike in curve.alike):
-            stretch = _Stretch(
-                stretch.p, PERIOD_DOUBLING.name
-            )  # of the orbit of one impact: by symmetry c turns back there
-        if merged and merged[-1].p.overlaps(stretch.p):
+            # of the orbit of one impact: by symmetry c turns back there
+            stretch = _Stretch(stretch.p, PERIOD_DOUBLING.name)
+        # a wide one may reach several before it
+        while merged and merged[-1].p.overlaps(stretch.p):
             stretch = _Stretch(merged.pop().p.union(stretch.p), None)
         merged.append(stretch)
     return merged
@@ -314,7 +314,7 @@ def _stable(orbit: OrbitOnCurve) -> bool | None:
 
 
 def _visible(orbit: OrbitOnCurve) -> bool | None:
-    # Whether the heights of all flights, which rise at first and fall at last, are positive; None where it is open
+    # whether the heights of all flights, which rise at first and fall at last, are positive; None where it is open
     balls = orbit.curve.balls
     for flight, span in enumerate(orbit.spans):
         start = orbit.launched(flight, 0)
@@ -354,7 +354,7 @@ def _arc(
 
 
 def _open_parts(curve: ClearanceCurve, window: _Window, left: list[Ball]) -> list[OpenPart]:
-    # The parts of the window in which the orbits over these stretches of p may be
+    # the parts of the window in which the orbits over these stretches of p may be
     parts = []
     for p in left:
         orbit = curve.at(p)
