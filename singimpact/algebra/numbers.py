@@ -132,8 +132,14 @@ def rational_number(name: str, value: Any) -> Fraction:
     return exact_value
 
 
-def rational_ends(name: str, values: object, accepted: str) -> tuple[Fraction, Fraction]:
+def rational_ends(
+    name: str, values: object, accepted: str, read: Callable[[str, object], Fraction] = rational_number
+) -> tuple[Fraction, Fraction]:
     """Two rational numbers, the first below the second, or a refusal.
+
+    Parameters
+    ----------
+    read : makes a rational number of each.
 
     Examples
     --------
@@ -141,8 +147,8 @@ def rational_ends(name: str, values: object, accepted: str) -> tuple[Fraction, F
     (Fraction(7, 10), Fraction(1, 1))
     """
     if isinstance(values, tuple | list | np.ndarray) and len(values) == 2:
-        with suppress(InputError):
-            low, high = (rational_number(name, end) for end in values)
+        with suppress(TypeError, ValueError):
+            low, high = (read(name, end) for end in values)
             if low < high:
                 return low, high
     raise refuse(name, values, accepted)

@@ -20,6 +20,7 @@ from singimpact.branches.branch import interval
 from singimpact.branches.cascade import Cascade, cascade
 from singimpact.branches.orbits import Notes
 from singimpact.branches.resting import Released, Releases, Return, clock
+from singimpact.dynamics.long_run import rising_zeros
 from singimpact.dynamics.threshold import threshold
 from singimpact.flights.impact_map import checked_digits
 from singimpact.inputs import InputError, checked_keywords, require, whole
@@ -190,7 +191,7 @@ def border_orbits(
     require_rebound(osc, "a border orbit, which ends on gamma,")
     osc = with_number(osc, over)
     releases = Releases(osc, over, whole("periods", periods, 1, 1000))
-    returns = osc.period is not None or len(releases.phases(osc)) > 1
+    returns = osc.period is not None or len(rising_zeros(osc)) > 1
     require(returns, "model", osc, "one with a period, or with a later zero where a_c rises, to which orbits can come")
     low, high = _ends(osc, over, between)
     digits = None if digits is None else max(checked_digits(digits), SETTINGS.digits)
@@ -227,7 +228,7 @@ class _Search:
         last: tuple[float, tuple[float, ...], list[Released]] | None = None
         for value in self.values:
             model = self.releases.model(value)
-            phases = self.releases.phases(model)
+            phases = rising_zeros(model)
             if model.period is not None and last is not None and len(phases) == len(last[1]):
                 phases = _aligned(phases, last[1], as_float(model.period))
             here = value, phases, [self.releases.orbit(model, phases, index) for index in range(len(phases))]

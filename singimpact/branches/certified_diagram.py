@@ -361,9 +361,10 @@ def _open_parts(curve: ClearanceCurve, window: _Window, left: list[Ball]) -> lis
         if orbit is None or not window.misses(orbit):
             rows = ([], []) if orbit is None else ([orbit.c[0]], [v[0] for v in orbit.v])
             # what is not bounded is left to the whole window
-            reached = [
-                reduce(flint.arb.union, balls or ends).intersection(flint.arb.union(*ends))
-                for balls, ends in zip(rows, window, strict=True)
-            ]
-            parts.append(OpenPart(curve.n, curve.k, *((float(side.lower()), float(side.upper())) for side in reached)))
+            reached = (reduce(flint.arb.union, balls or ends) for balls, ends in zip(rows, window, strict=True))
+            inner = (
+                (max(float(low), float(side.lower())), min(float(high), float(side.upper())))
+                for side, (low, high) in zip(reached, window, strict=True)
+            )
+            parts.append(OpenPart(curve.n, curve.k, *inner))
     return parts

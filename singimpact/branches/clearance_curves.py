@@ -123,14 +123,10 @@ class OrbitOnCurve:
     def _slope(self, launch: State, flow: list[list[Series]], speed: Series) -> list[list[Series]]:
         # the derivative of the impact map, times x' before the impact: the flight gets longer by -h / x'
         r, rate = self.curve.r, self.curve.rate
-        A = self.curve.motion.A.table()
-        force = combined(flow[1], tuple(combined(row, launch) for row in A))
+        force = combined(flow[1], tuple(combined(row, launch) for row in self.curve.motion.A.table()))
         later = 0, 0, 0, rate * launch[4], -rate * launch[3]
         by_tau, by_v = ([combined(flow[i], later) for i in (0, 1)], [flow[0][1], flow[1][1]])
-        return [
-            [speed - by_tau[0], -by_v[0]],
-            [-r * (by[1] * speed - force * by[0]) for by in (by_tau, by_v)],
-        ]
+        return [[speed - by_tau[0], -by_v[0]], [-r * (by[1] * speed - force * by[0]) for by in (by_tau, by_v)]]
 
 
 class ClearanceCurve:
@@ -243,14 +239,14 @@ class ClearanceCurve:
         return series
 
     def _scaled(self, p: Ball) -> list[Series]:
-        # The solution with the amplitude of the forcing
+        # the solution with the amplitude of the forcing
         solution = self._solution(p)
         wave = solution[1] * solution[1] + solution[2] * solution[2]
         size = (self.sign * self.amplitude) / wave.sqrt()
         return [part * size for part in solution]
 
     def _solution(self, p: Ball) -> list[Series]:
-        # A solution of the four equations: their minors.
+        # a solution of the four equations: their minors
         # All minors vanish with p, and where both flights are alike: near there they are divided by the distance. What
         # is left has the Taylor coefficients of the next order, over a ball that reaches to the zero.
         for zero, side in [(flint.arb(0), 1), *((alike, -1) for alike in self.alike)]:

@@ -18,7 +18,7 @@ import numpy as np
 from singimpact.algebra.balls import BITS_A_DIGIT, as_rational
 from singimpact.algebra.expressions import names_in
 from singimpact.algebra.isolated_zeros import IsolatedZeros
-from singimpact.algebra.numbers import Array, as_float, constant, rational_ends
+from singimpact.algebra.numbers import Array, as_float, constant, rational_ends, rational_near
 from singimpact.algebra.precision import balls_at, digits_at, for_user
 from singimpact.branches.ball_closing import BallClosing, return_slope
 from singimpact.branches.closing import Closing
@@ -101,7 +101,10 @@ def periodic(
         return _limit_cycles(osc, n, (k, start, v, digits))
     if osc.period is None:
         raise InputError("the forcing has no period: a periodic orbit needs one, or f and g free of t")
-    k, window = _count("k", k, 1), None if v is None else rational_ends("v", v, WINDOW)
+    k, window = (
+        _count("k", k, 1),
+        None if v is None else rational_ends("v", v, WINDOW, lambda name, end: rational_near(constant(name, end), 64)),
+    )
     require(window is None or window[0] >= 0, "v", v, WINDOW)
     if osc.plastic and v is not None:
         raise refuse("v", v, "no v with restitution = 0: all velocities after impacts are 0")

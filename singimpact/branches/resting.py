@@ -9,10 +9,10 @@ from singimpact.algebra.numbers import Array, as_float
 from singimpact.branches.closing import FreeClosing, lowest
 from singimpact.branches.orbits import Notes, PeriodicOrbit, PeriodicOrbits, chatter_orbit
 from singimpact.contact.contact import acceleration as a_c
-from singimpact.contact.points import tangency_points, window
+from singimpact.contact.points import window
 from singimpact.dynamics.chatter import ENDING, chatter_left
 from singimpact.dynamics.lift_off import release, turns_between
-from singimpact.dynamics.long_run import lift_offs
+from singimpact.dynamics.long_run import rising_zeros
 from singimpact.dynamics.orbit import orbit
 from singimpact.flights.family import Family, family
 from singimpact.flights.impact_map import impact_map
@@ -126,7 +126,7 @@ def chatter_orbits(osc: Oscillator, k: int) -> PeriodicOrbits:
     >>> round(float(found.tau[0]), 6), found.stable
     (2.743893, True)
     """
-    phases, notes = list(lift_offs(osc)), Notes()
+    phases, notes = list(rising_zeros(osc)), Notes()
     following = [_next_lift_off(osc, phases, index, k, notes) for index in range(len(phases))]
     orbits = list[PeriodicOrbit]()
     for first, phase in enumerate(phases):
@@ -252,10 +252,6 @@ class Releases:
         """The model at a value of the number: a double or a Fraction, taken exactly."""
         return self.osc.replace(**{self.over: value})
 
-    def phases(self, model: Oscillator) -> tuple[float, ...]:
-        """The zeros at which a_c rises, in a period or all of a polynomial."""
-        return tuple(point.tau for point in tangency_points(model) if point.kind == "gamma")
-
     def followed(self, model: Oscillator, phases: tuple[float, ...]) -> tuple[float, ...]:
         """The phases at which a_c rises through zero, next to those of a model nearby; nan where one is not found."""
         return tuple(_rising(model, phase) for phase in phases)
@@ -274,7 +270,7 @@ class Releases:
         (1, True)
         """
         model = self.model(value)
-        return self.orbit(model, self.phases(model) if near is None else self.followed(model, near), index)
+        return self.orbit(model, rising_zeros(model) if near is None else self.followed(model, near), index)
 
     def orbit(self, model: Oscillator, phases: tuple[float, ...], index: int) -> Released:
         """The orbit released at phases[index]."""

@@ -48,6 +48,11 @@ class Future:
     time: float
 
 
+def rising_zeros(model: Oscillator) -> tuple[float, ...]:
+    """The zeros at which a_c becomes positive, of one period or all of a polynomial."""
+    return tuple(point.tau for point in tangency_points(model) if point.kind == "gamma")
+
+
 def lift_offs(model: Oscillator) -> tuple[float, ...]:
     """The phases in one period at which a_c becomes positive.
 
@@ -56,8 +61,7 @@ def lift_offs(model: Oscillator) -> tuple[float, ...]:
     >>> [round(tau, 6) for tau in lift_offs(Oscillator("x", "cos(2*t)", "0.3", "1/2"))]
     [2.508541]
     """
-    points = () if model.period is None else tangency_points(model)
-    return tuple(point.tau for point in points if point.kind == "gamma")
+    return () if model.period is None else rising_zeros(model)
 
 
 def lift_offs_of_walls(model: Oscillator) -> tuple[tuple[float, int], ...]:

@@ -228,6 +228,11 @@ def test_a_window_of_velocities_of_a_nonlinear_model() -> None:
     assert "the list lacks <(1, 2) orbit, stable: (tau, v) = (1.08739, 0.496883)>" in doubt
 
 
+def test_ends_of_a_window_may_be_irrational() -> None:
+    assert DUFFING.periodic(1, 2, v=("pi/6.3", "sqrt(2)")).complete
+    assert len(DUFFING.periodic(1, 2, v=("0.49", "pi/6"))) == 1
+
+
 @pytest.mark.parametrize("v", [(1, 0), 3, (0, "a"), (-1, 2), (0, 1, 2)])
 def test_windows_that_are_none(v) -> None:
     with pytest.raises(InputError, match=r"v = .* is not accepted: give two numbers \(low, high\)"):
