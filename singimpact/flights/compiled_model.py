@@ -314,8 +314,8 @@ class CompiledModel:
     def _at_walls(self, codes: Array, rows: Array) -> tuple[Array, Array]:
         """Codes and columns of hits; those of the other wall count as hits, with x' > 0."""
         if len(self.walls) == 2:
-            across = (codes == ACROSS) | (codes == ACROSS + NOT_REFINED)
-            codes -= across * np.int8(ACROSS)
+            across = np.flatnonzero((codes == ACROSS) | (codes == ACROSS + NOT_REFINED))
+            codes[across] -= ACROSS
             for column in (VELOCITY, VELOCITY_BY_TAU, VELOCITY_BY_V):  # rows of flights that did not end are not filled
                 rows[column, across] *= -1.0
         return codes, rows
