@@ -10,7 +10,7 @@ _FILES = {
     "certificates": (
         "collected definite identical left_behind negative_on positive_in positive_on sign_chain value_at"
     ),
-    "certified": "Certified from_ends",
+    "certified": "Certified from_ball from_ends",
     "derivations": "At substitution",
     "expressions": "FOLDING Number Root evaluate function_of walk",
     "gathering": "Remembered",
@@ -18,7 +18,7 @@ _FILES = {
     "interpolation": "READING interpolated",
     "jets": "Jet JetSpace",
     "long_sums": "LongSum Monomials Products order_key primed",
-    "numbers": "as_float as_mpf compare constant exact float_array rational_near sign_of",
+    "numbers": "Array EPSILON as_float as_mpf compare constant exact float_array rational_near sign_of",
     "parsing": "DEFINITIONS from_sympy parse",
     "polynomials": "Exponents",
     "precision": "balls_at series_of_any_length",

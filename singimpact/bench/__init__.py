@@ -23,13 +23,13 @@ _FILES = {
     "selftest.responses": "balls derivatives digits fixed_steps limits orbits rebounds",
     "selftest.rows": "flown",
     "selftest.run": "grazes lanes",
-    "steep_balls": "AGREE APART COLUMNS Flown MORE OPEN enclosed summary",
-    "steep_states": "FAMILIES Family NAMES PARAMETRIC SMOOTH STEEP drawn_of family_of",
+    "steep_states": "DRAW FAMILIES Family NAMES PARAMETRIC SMOOTH STEEP allowed drawn_of family_of",
     "stress.flown": "hit_trial landing",
     "stress.judging": "Function LIMITS Launch PLACES SteepLaunch Trial moved worst",
     "stress.table": "FUNCTIONS chosen stressed",
     "truth.first_hit": "Cubic Linear first_hit",
-    "truth.graded_steps": "HIT MISS Motion PHASE POSITION UNDECIDED VELOCITY",
+    "truth.graded_steps": "FINENESS HIT MISS Motion PHASE POSITION UNDECIDED VELOCITY",
+    "truth.hit_in_balls": "second_program",
     "truth.plain_orbits": "motion plain_orbits",
 }
 __getattr__ = names_of(__name__, _FILES)

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import islice
-from math import ceil, log10
+from math import ceil, isfinite, log10
 from typing import Any, NamedTuple
 
 from singimpact.algebra.balls import BITS_A_DIGIT, Balls, as_rational
@@ -89,6 +89,9 @@ class DigitOrbits:
     def landings(self, value: Fraction, count: int) -> list[Landing]:
         """The states after at most `count` impacts, up to the first one beyond the zero where gamma ends."""
         model = self.found.releases.model(value)
+        # a search that goes too far leaves the models in which the orbit is released
+        if not all(map(isfinite, self.found.ends(model))):
+            return []
         with balls_at(self.bits):
             start, end = self._zeros(model)
             zero, rows = end.moved(self.bits), list[Landing]()

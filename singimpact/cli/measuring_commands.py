@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from dataclasses import asdict, astuple
+from dataclasses import astuple
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -29,7 +29,6 @@ from singimpact.store import folder, write_text
 
 if TYPE_CHECKING:
     from singimpact.bench.measuring import Effort, Measured
-    from singimpact.bench.steep_balls import Enclosures, Estimate
 
 
 # ---- the tables of `singimpact bench states`
@@ -43,61 +42,23 @@ BY_STEPS = (
 
 
 def random_states(
-    states: int, seed: int, workers: int | None, keep: str | None, family: str, balls: tuple[int, int, int]
+    states: int, seed: int, workers: int | None, keep: str | None, family: str
 ) -> tuple[dict[str, Any], str, bool]:
-    """Random states of a family, as data and as text, and whether one of them or a truth is wrong.
-
-    Parameters
-    ----------
-    balls : of steep and parametric families: states that are enclosed, how many of these by the second program too, and
-        how many with 40 digits too.
-    """
-    from singimpact.bench import random_states, steep_balls, steep_states
+    """Random states of a family, as data and as text, and whether one of them or a truth is wrong."""
+    from singimpact.bench import random_states, steep_states
     from singimpact.case_pools import WorkerPool
 
     steep = family in ("steep", "parametric")
-    data, parts, wrong = dict[str, Any](), list[str](), False
     with WorkerPool(workers) as pool:
         if steep:
             checked = steep_states.check(states, seed, pool, keep, family == "parametric")
         else:
             checked = random_states.check(states, seed, pool, keep, family)
-        if steep and balls[0]:
-            beside = None if keep is None else Path(keep).with_name(f"{Path(keep).stem}-balls.npz")
-            enclosures = steep_balls.check(checked.columns, balls, seed, pool, beside)
-            data, parts, wrong = {"balls": asdict(enclosures)}, [_balls(enclosures)], enclosures.wrong
     rows, listed = checked.rows(), checked.listed()
     cells = [[*map(str, astuple(row)[:-1]), f"{row.worst:.2g}"] for row in rows]
     lists = ["\n  ".join([f"{sort}, for example:", *texts]) for sort, texts in listed.items() if texts]
-    text = "\n\n".join([f"{columns(COLUMNS, cells)}\n{BY_STEPS if steep else BY_SOLVER}", *parts, *lists])
-    return data | checked.as_data(), text, wrong or any(row.wrong for row in rows)
-
-
-def _balls(balls: Enclosures) -> str:
-    """The summary of the flights that were enclosed."""
-    verdicts = "{} agree, {} do not, {} are not decided"
-    lines = [
-        f"enclosures: {balls.states} states, {balls.refused} refused, {balls.seconds:.3f} s a state with 20 digits, "
-        f"{balls.more_seconds:.3f} s with 40",
-        f"fixed steps against enclosures: {balls.agree} agree, {balls.disagree} do not; "
-        f"largest relative error of a flight time {balls.worst_step:.1e}",
-        f"second program against enclosures: {verdicts.format(*balls.checked)}",
-        f"40 digits against 20: {verdicts.format(*balls.twice)}",
-        f"largest error of a right hit in units of 10 kappa epsilon: flight time {balls.worst:.3g}, "
-        f"velocity {balls.worst_velocity:.3g}",
-        _estimate("error", balls.time),
-        _estimate("velocity_error", balls.velocity),
-    ]
-    return "\n".join(lines)
-
-
-def _estimate(name: str, given: Estimate | None) -> str:
-    if given is None:
-        return f"`{name}`: flights have none"
-    return (
-        f"`{name}`: below the true error in {given.below} of {given.states} states, median of estimate/error "
-        f"{given.median:.3g} (true errors below 2^-54 count as 2^-54)"
-    )
+    text = "\n\n".join([f"{columns(COLUMNS, cells)}\n{BY_STEPS if steep else BY_SOLVER}", *lists])
+    return checked.as_data(), text, any(row.wrong for row in rows)
 
 
 @click.command()
@@ -115,9 +76,6 @@ def _estimate(name: str, given: Estimate | None) -> str:
     "Of random states: linear and cubic, steep layers, f with t, linear and cubic between two walls, or at rest.",
     "reference",
 )
-@whole_option("--balls", 0, None, "Steep states enclosed with 20 digits.", 1000)
-@whole_option("--digits-checks", 0, None, "Of these, states flown by the second program too.", 100)
-@whole_option("--digit-pairs", 0, None, "Of these, states enclosed with 40 digits too.", 200)
 @click.option("--store", is_flag=True, help="Store the ratios of the group limit in place of those of the package.")
 @output_options
 def bench_command(
@@ -131,9 +89,6 @@ def bench_command(
     workers: int | None,
     keep: str | None,
     family: str,
-    balls: int,
-    digits_checks: int,
-    digit_pairs: int,
     as_json: bool,
     output: str | None,
 ) -> None:
@@ -148,9 +103,8 @@ def bench_command(
 
     The group `states` compares random states with a slow solver of 60 digits; --states, --seed, --workers and
     --keep belong to it. With `--family steep` it compares 20 families of steep models with a solver of small fixed
-    steps, with `--family parametric` four in whose f t occurs or that have no t at all. Of these states --balls are
-    enclosed with 20 digits, of which the second program flies --digits-checks, and --digit-pairs are enclosed with
-    40 digits too. `--family between-walls` has the solver of 60 digits for models with two walls, `--family plastic`
+    steps, with `--family parametric` four in whose f t occurs or that have no t at all.
+    `--family between-walls` has the solver of 60 digits for models with two walls, `--family plastic`
     for releases from rest with restitution 0. The exit code is 1 if an impact is wrong.
     """
     from singimpact.bench.groups import GROUPS, usual
@@ -171,8 +125,7 @@ def bench_command(
     texts = [_page(tables[0], output)] if form == "page" else [_text(table, form) for table in tables]
     wrong = _is_over(tables, store)
     if "states" in chosen:
-        sizes = (balls, digits_checks, digit_pairs)
-        values["states"], text, states_wrong = random_states(states, seed, workers, keep, family, sizes)
+        values["states"], text, states_wrong = random_states(states, seed, workers, keep, family)
         wrong |= states_wrong
         texts.append(text)
     if directory is not None:

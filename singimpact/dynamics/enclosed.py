@@ -370,8 +370,9 @@ def searched(
     rate = float(contact[1].mid())
     forgotten = max(rate**2 / multiplier_across(contact[0], rate), 1e-300)  # by each impact, of the error in the cut
     most = ceil((digits + 3) * log(10) / -log(forgotten))
-    # impacts along gamma in the first search for the threshold
-    v, impacts, step = rough, 6, Fraction(1, 10**12)
+    # impacts along gamma in the first search: they shrink sigma to a twelfth, so that the two terms come near to it for
+    # r near 1 too, where each impact shrinks it by little
+    v, impacts, step = rough, max(6, ceil(2.4 / -log(rate))), Fraction(1, 10**12)
     while True:
         impacts = min(impacts, most)
         reached = max(Fraction(forgotten**impacts), Fraction(1, 10 ** (digits + 3))) / 10

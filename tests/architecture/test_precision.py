@@ -6,7 +6,7 @@ import pytest
 
 HOME = "algebra/precision.py"
 # programs of other people, which are timed as their users write them: in mpmath.mp, in the command's own process
-PEERS = ("bench/peers/", "bench/groups/", "bench/stress/", "bench/measuring.py", "bench/steep_balls.py")
+PEERS = ("bench/peers/", "bench/groups/", "bench/stress/", "bench/measuring.py")
 CARRIERS = {"libmp", "ctx_mp", "nstr"}  # of mpmath: what reads no precision of the process
 
 

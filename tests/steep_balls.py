@@ -1,5 +1,7 @@
 """States of steep families enclosed with 20 digits: whether fixed steps agree, and how large the errors of doubles are.
 
+`python tests/steep_balls.py STATES BALLS CHECKED TWICE` prints a summary.
+
 Enclosures share no code with the flights in doubles nor with the fixed steps, which they judge. They are judged
 themselves, on some of the states, by the second program and by enclosures with 40 digits, which choose another degree,
 other steps and another precision.
@@ -7,8 +9,9 @@ other steps and another precision.
 
 from __future__ import annotations
 
+import sys
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from fractions import Fraction
 from functools import partial
 from math import isfinite, nan
@@ -18,11 +21,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from singimpact.algebra.certified import Certified, from_ball
-from singimpact.algebra.numbers import EPSILON, Array, exact
-from singimpact.bench.steep_states import DRAW, allowed, drawn
-from singimpact.bench.truth.graded_steps import FINENESS, HIT, MISS, UNDECIDED
-from singimpact.bench.truth.hit_in_balls import second_program
+from singimpact.algebra import EPSILON, Array, Certified, exact, from_ball
+from singimpact.bench import DRAW, FINENESS, HIT, MISS, UNDECIDED, allowed, second_program, steep_states
 from singimpact.cases import sweep
 from singimpact.certificates.checker import Refused
 from singimpact.impact_oscillator import ImpactOscillator
@@ -87,7 +87,7 @@ def check(
 
 def enclosed(seed: int, state: Flown) -> Array:
     """The enclosure of one state, in the order of COLUMNS; nan where there is nothing to compare."""
-    case = drawn(seed, state.case)
+    case = steep_states.drawn(seed, state.case)
     osc, at = case.oscillator(), (float(case.tau[state.launch]), float(case.v[state.launch]))
     row = dict.fromkeys(COLUMNS, np.nan)
     numbers, row["seconds"] = by_digits(osc, at, FEWER)
@@ -249,3 +249,9 @@ def _most(values: Array) -> float:
 
 def _mean(values: Array) -> float:
     return float(np.mean(values[np.isfinite(values)])) if np.isfinite(values).any() else nan
+
+
+if __name__ == "__main__":
+    states, *sizes = map(int, sys.argv[1:])
+    for measure, value in asdict(check(steep_states.check(states, 0).columns, sizes, 0)).items():
+        print(f"{measure}: {value}")
