@@ -13,6 +13,7 @@ from singimpact.branches.manifold import manifold as manifold
 from singimpact.branches.transitions import transitions as transitions
 from singimpact.cases import sweep as sweep
 from singimpact.certificates.certificate import certify as certify, read_certificate as read_certificate
+from singimpact.contact.contacts_over import contact_points as contact_points
 from singimpact.contact.points import tangency_points as tangency_points
 from singimpact.dynamics.bifurcation_diagram import bifurcation as bifurcation
 from singimpact.dynamics.ensemble import ensemble as ensemble

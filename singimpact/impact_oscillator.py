@@ -63,7 +63,7 @@ class ImpactOscillator(Oscillator):
     basins, bifurcation, lyapunov, threshold = Study(), Study(), Study(), Study()
     tangency_points, classify, grown_gamma, release_map = Study(), Study(), Study(), Study()
     border_orbits, certified_diagram, transitions = Study(), Study(), Study()
-    explore, selftest = Study(), Study()
+    contact_points, explore, selftest = Study(), Study(), Study()
     ensemble, regions, fit, sensitivity = Study(), Study(), Study(), Study()
 
     @with_walls(_at_walls)

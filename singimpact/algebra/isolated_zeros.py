@@ -8,7 +8,7 @@ neither, down to the least size, are handed on as undecided.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any, Protocol
 
@@ -248,66 +248,79 @@ def overlap(one: Place, other: Place) -> bool:
     return all(a.overlaps(b) for a, b in zip(one, other, strict=True))
 
 
-# All double zeros in one variable of a function with a parameter, in a window of both.
-
-Rectangle = tuple[Fraction, Fraction, Fraction, Fraction]
+# All zeros in one variable of a function with parameters at which as many derivatives vanish as there are parameters.
 
 
 @dataclass(frozen=True)
-class DoubleZero:
-    """A place where the function and its slope vanish, proved to exist and to be alone in its box.
+class RepeatedZero:
+    """A place where a function and its first derivatives vanish, proved to exist and to be alone in its box.
 
     Attributes
     ----------
-    at, value : of the variable and of the parameter, rational, true to 2^-80 of the window. curvature : sign of the
-        second derivative; 0 where it is not told from zero.
+    place : balls of the variable and of each parameter. sign : of the next derivative; 0 where it is not told from
+        zero. at, values : of the variable and of the parameters as rationals.
     """
 
-    at: Fraction
-    value: Fraction
-    curvature: int
+    place: Place
+    sign: int
+
+    @property
+    def at(self) -> Fraction:
+        return as_rational(self.place[0])
+
+    @property
+    def values(self) -> tuple[Fraction, ...]:
+        return tuple(map(as_rational, self.place[1:]))
 
 
 @dataclass(frozen=True)
-class DoubleZeros:
-    """found : in order of the parameter, then of the variable. undecided : boxes that may hold more."""
+class RepeatedZeros:
+    """found : in order of the parameters, then of the variable. undecided : boxes that may hold more."""
 
-    found: tuple[DoubleZero, ...]
-    undecided: tuple[Rectangle, ...]
+    found: tuple[RepeatedZero, ...]
+    undecided: tuple[Box, ...]
 
     @property
     def complete(self) -> bool:
-        """Whether no other double zero lies in the window."""
+        """Whether no other zero of this kind lies in the window."""
         return not self.undecided
 
 
-def double_zeros(tree: Expression, names: tuple[str, str], window: Rectangle) -> DoubleZeros:
-    """The double zeros of a tree in the first name, as the second moves.
+def repeated_zeros(tree: Expression, names: Sequence[str], window: Box, bits: int = BITS) -> RepeatedZeros:
+    """The places in a window where a tree and its derivatives by the first name vanish, one for each other name.
 
     Parameters
     ----------
-    names : the variable and the parameter. window : ends of the one, ends of the other.
+    names : the variable and the parameters. window : the ends of each.
+
+    Notes
+    -----
+    A zero is found where the matrix of derivatives is regular: the next derivative is not 0, and the parameters move
+    the value and the other derivatives in all directions.
 
     Examples
     --------
     >>> from singimpact.algebra.parsing import parse
-    >>> box = (Fraction(-1), Fraction(6), Fraction(0), Fraction(2))
-    >>> made = double_zeros(parse("p*cos(t) - 1", ["t", "p"]), ("t", "p"), box)
-    >>> [(round(float(each.at), 12) + 0.0, float(each.value), each.curvature) for each in made.found], made.complete
+    >>> box = (Fraction(-1), Fraction(6)), (Fraction(0), Fraction(2))
+    >>> made = repeated_zeros(parse("p*cos(t) - 1", ["t", "p"]), ("t", "p"), box)
+    >>> [(round(float(each.at), 12) + 0.0, float(each.values[0]), each.sign) for each in made.found], made.complete
     ([(0.0, 1.0, -1)], True)
     """
-    slope = derivative(tree, names[0])
-    bend = derivative(slope, names[0])
-    isolated = isolated_zeros((tree, slope), names, (window[:2], window[2:]))
+    trees = [tree]
+    for _ in names:
+        trees.append(derivative(trees[-1], names[0]))
+    # boxes of more unknowns are cut more often
+    most = SETTINGS.most * 20 ** max(0, len(names) - 3)
+    isolated = isolated_zeros(trees[:-1], names, window, settings=replace(SETTINGS, bits=bits, most=most))
     zeros = []
-    for at, value in isolated.found:
-        with balls_at(SETTINGS.bits):
-            bent: Any = Balls(SETTINGS.bits).evaluate(bend, {names[0]: at, names[1]: value})
-        zero = DoubleZero(as_rational(at), as_rational(value), 1 if bent > 0 else -1 if bent < 0 else 0)
-        if window[0] <= zero.at <= window[1] and window[2] <= zero.value <= window[3]:
+    for balls in isolated.found:
+        with balls_at(bits):
+            bent: Any = Balls(bits).evaluate(trees[-1], dict(zip(names, balls, strict=True)))
+        zero = RepeatedZero(balls, 1 if bent > 0 else -1 if bent < 0 else 0)
+        if all(low <= side <= high for side, (low, high) in zip((zero.at, *zero.values), window, strict=True)):
             zeros.append(zero)
-    zeros.sort(key=lambda each: (each.value, each.at))
-    return DoubleZeros(tuple(zeros), tuple((*a, *b) for a, b in isolated.undecided))
+    zeros.sort(key=lambda each: (each.values, each.at))
+    return RepeatedZeros(tuple(zeros), isolated.undecided)
 
 
 # All real zeros of a function of one variable in a window: isolated by balls, so none is missed.

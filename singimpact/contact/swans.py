@@ -23,7 +23,7 @@ from singimpact.algebra.expressions import (
     subtract,
     walk,
 )
-from singimpact.algebra.isolated_zeros import double_zeros, is_one_root, isolate
+from singimpact.algebra.isolated_zeros import is_one_root, isolate, repeated_zeros
 from singimpact.algebra.numbers import as_float, sign_of
 from singimpact.algebra.precision import kept_property
 from singimpact.algebra.rings import EXACT, SYMBOLIC, ExactAtAngles
@@ -121,9 +121,9 @@ class SwanPoints(Results, tuple[SwanPoint, ...]):
             return not self
         push = subtract(model.forcing(), substitute(model.force(), {"x": Name(BOUND), "xdot": number(0)}))
         times = window(model, derivative(model.forcing(), "t"))
-        zeros = double_zeros(push, ("t", BOUND), (*times, *self.between))
+        zeros = repeated_zeros(push, ("t", BOUND), (times, self.between))
         swans = [(swan.tau, swan.clearance) for swan in self]
-        inside = [(float(zero.at), float(zero.value)) for zero in zeros.found if _in_period(model, float(zero.at))]
+        inside = [(float(zero.at), float(zero.values[0])) for zero in zeros.found if _in_period(model, float(zero.at))]
         near = [[max(abs(a - p), abs(b - q)) < SAME for p, q in swans] for a, b in inside]
         return zeros.complete and len(inside) == len(swans) and all(map(any, near))
 

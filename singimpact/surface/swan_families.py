@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.expressions import Expression, Name
-from singimpact.algebra.isolated_zeros import DoubleZero, DoubleZeros, double_zeros
+from singimpact.algebra.isolated_zeros import RepeatedZero, RepeatedZeros, repeated_zeros
 from singimpact.algebra.numbers import Array, as_float
 from singimpact.contact.contact import acceleration, rest_acceleration
 from singimpact.contact.swans import swan_points_over_clearance, swans_are_listed
@@ -112,30 +112,30 @@ def swans_met(family: Family, values: Array) -> tuple[list[Transition], tuple[st
     if not periods:
         raise InputError(f"g = {family.model.g} is not seen to be periodic: give period=")
     longest = Fraction(max(periods))
-    window = (-longest / MARGIN, longest * Fraction(MARGIN + 1, MARGIN), *between)
-    zeros = double_zeros(family.acceleration(), ("t", family.over), window)
+    window = (-longest / MARGIN, longest * Fraction(MARGIN + 1, MARGIN)), between
+    zeros = repeated_zeros(family.acceleration(), ("t", family.over), window)
     inside_period = [zero for zero in zeros.found if _in_period(family, zero, float(longest))]
     return [_as_transition(zero) for zero in inside_period], _doubts(zeros, family.over, len(periods))
 
 
-def _in_period(family: Family, zero: DoubleZero, longest: float) -> bool:
-    value = float(zero.value)
+def _in_period(family: Family, zero: RepeatedZero, longest: float) -> bool:
+    value = float(zero.values[0])
     period = family.periods(np.array([value])).get(value, longest)
     return -SLACK * period <= float(zero.at) < period * (1 - SLACK)
 
 
-def _as_transition(zero: DoubleZero) -> Transition:
-    sign = "positive" if zero.curvature > 0 else "negative"  # not 0: the matrix of derivatives is regular there
+def _as_transition(zero: RepeatedZero) -> Transition:
+    sign = "positive" if zero.sign > 0 else "negative"  # not 0: the matrix of derivatives is regular there
     at = float(zero.at) + 0.0
-    return Transition(f"swan, {sign}", float(zero.value), at, 0.0, (at,))
+    return Transition(f"swan, {sign}", float(zero.values[0]), at, 0.0, (at,))
 
 
-def _doubts(zeros: DoubleZeros, over: str, periods: int) -> tuple[str, ...]:
+def _doubts(zeros: RepeatedZeros, over: str, periods: int) -> tuple[str, ...]:
     notes = []
     if periods > 1:
         notes.append(f"the period moves with {over}: swans are listed in a window that is the longest one sampled")
     if zeros.undecided:
-        low, high = (float(f(box[k] for box in zeros.undecided)) for f, k in ((min, 2), (max, 3)))
+        low, high = (float(f(box[1][k] for box in zeros.undecided)) for f, k in ((min, 0), (max, 1)))
         notes.append(
             f"a_c may have zeros of order 3, or double ones that stay, for {over} from {low:.9g} to {high:.9g}: "
             "swans there are not decided"

@@ -43,6 +43,7 @@ CALLS = {
     "sample": lambda: OSC.orbit(0.9, 0.5, impacts=30).sample([1.0, 2.0]),
     "launch": lambda: OSC.launch(2, [0.1, 0.2], 0),
     "tangency_points": lambda: si.tangency_points(OSC),
+    "contact_points": lambda: si.contact_points(OSC, 2, "clearance", (-2, 2)),
     "swan_points": lambda: si.swan_points("x", "cos(2*t)", {}),
     "threshold": lambda: si.threshold(OSC, "pi/2.8"),
     "lyapunov": lambda: si.lyapunov(OSC, 0.9, 0.5, impacts=200),
