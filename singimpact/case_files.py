@@ -396,7 +396,6 @@ class ZarrStore(_Output):
         self._open()
 
     def _begin(self, values: Array) -> None:
-        """Make the store."""
         rows = max(1, min(FILE_ROWS, FILE_BYTES // max(1, values[:1].nbytes)))
         self.array = self.zarr.open_group(self.part, mode="a").create_array(
             "result",

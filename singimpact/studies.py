@@ -280,7 +280,6 @@ certified_gamma = _of_models(ImpactOscillator.certified_gamma)
 
 
 def _two_ends(window: Any, accepted: str) -> tuple[Any, Any]:
-    """The ranges of both axes."""
     ranges = (window.x, window.y) if hasattr(window, "x") and hasattr(window, "y") else window
     require(isinstance(ranges, tuple | list) and len(ranges) == 2, "window", window, accepted)
     return ranges[0], ranges[1]

@@ -81,7 +81,6 @@ def recorded(page: str) -> str | None:
 
 
 def _named(content: bytes) -> str:
-    """Git's name of a file with this content."""
     return hashlib.sha1(b"blob %d\0" % len(content) + content, usedforsecurity=False).hexdigest()
 
 

@@ -251,7 +251,6 @@ class _Search:
     def _piece(
         self, index: int, phases: tuple[float, ...], low: tuple[float, Released], high: tuple[float, Released]
     ) -> None:
-        """All changes of fate between two values."""
         pieces = [(low, high)]
         while pieces and len(self.found) < SETTINGS.most:
             one, other = pieces.pop()
@@ -366,7 +365,6 @@ def _gap(returned: Return, value: float) -> tuple[float, float, float, float]:
 
 
 def _with_digits(rough: BorderOrbit, digits: int) -> BorderOrbit:
-    """A border orbit in many digits."""
     if rough.status != Status.hit:
         return replace(rough, digits=digits)
     precise = in_digits(rough.returned, abs(rough.v / rough.slope), digits)

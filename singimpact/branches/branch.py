@@ -421,7 +421,6 @@ class BranchWalk(OrbitCurve):
         return self._separated(search, located)
 
     def _met(self, meeting: BranchPoint) -> None:
-        """Note which orbits a doubled branch meets."""
         n, k = self.closing.n, self.closing.k
         if meeting.kind is PITCHFORK and meeting.other is not None and meeting.other.k < k:
             self.notes.append(f"meets the ({n // 2}, {k // 2}) orbits at their doubling, at {meeting.at[-1]:.12g}")

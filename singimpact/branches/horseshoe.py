@@ -361,7 +361,6 @@ class _Route:
         return SETTINGS.share * min(gap, SETTINGS.margin * seen.width(home.radii))
 
     def _xi(self, state: Pair) -> Any:
-        """A ball of xi of a state."""
         off = state[0] - self.cones.centre[0]
         tau = self.map.balls.rational(off) - round(float(off) / self.period) * self.map.period
         row = [self.map.balls.rational(part) for part in self.cones.coordinates[0]]

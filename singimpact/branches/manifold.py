@@ -326,7 +326,6 @@ class _Grown:
         return True
 
     def _first(self, low: float, high: float) -> Piece:
-        """A part of the arc at the saddle."""
         return self.carried.refined(self.carried.first(low, high))
 
     def _inner(self, number: int) -> float:

@@ -270,7 +270,11 @@ class Releases:
         (1, True)
         """
         model = self.model(value)
-        return self.orbit(model, rising_zeros(model) if near is None else self.followed(model, near), index)
+        phases = () if near is None else self.followed(model, near)
+        # next to a swan releases move like a root: a model nearby does not lead to them
+        if near is None or (model.period is None and not np.isfinite(phases).all()):
+            phases = rising_zeros(model)
+        return self.orbit(model, phases, index)
 
     def orbit(self, model: Oscillator, phases: tuple[float, ...], index: int) -> Released:
         """The orbit released at phases[index]."""
@@ -320,7 +324,7 @@ class _Run:
         self.count = 0
 
     def released(self) -> Released:
-        if not self.zeros.size:
+        if not self.zeros.size or not np.isfinite(self.start):
             return self._result(0, False)
         place = self._flown()
         return self._result(max(place, 0), place >= 0)
@@ -361,7 +365,6 @@ class _Run:
         return 0 if status in (Status.no_return, Status.escaped) else -1
 
     def _one(self, tau: float, v: float) -> Status:
-        """One flight by the impact map."""
         step = impact_map(self.model, tau, v)
         status = Status(int(step.status))
         if status in (Status.hit, Status.graze):

@@ -264,7 +264,6 @@ def transitions(
 
 
 def _pairs(orbits: Any) -> list[tuple[int, int]]:
-    """(n, k); (0, k) are orbits without impact."""
     if isinstance(orbits, int | np.integer) and not isinstance(orbits, bool):
         most = whole("orbits", orbits, 1, SETTINGS.most)
         return [(0, 1), *((n, k) for n in range(1, most + 1) for k in range(1, most + 1))]
@@ -334,7 +333,6 @@ class _Search:
         return found + [orbit for k in sorted({k for _, k in self.pairs}) for orbit in periodic(osc, np.inf, k)]
 
     def _passes(self, followed: Branch, orbit: PeriodicOrbit, value: float) -> bool:
-        """Whether an orbit lies on a branch."""
         if (followed.n, followed.k) != (int(orbit.n), orbit.k):
             return False
         at = np.append(followed.parameter - value, np.nan)

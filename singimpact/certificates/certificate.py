@@ -16,18 +16,7 @@ from singimpact.branches.enclosed_event import EnclosedEvent
 from singimpact.branches.horseshoe import Horseshoe, HorseshoeFamily
 from singimpact.branches.krawczyk import EnclosedOrbit
 from singimpact.branches.orbits import PeriodicOrbit
-from singimpact.certificates.checker import (
-    BETWEEN,
-    IN_TIME,
-    KINDS,
-    SCHEMA,
-    SECONDS,
-    TOUCHING,
-    Refused,
-    digest_of,
-    read,
-    sentence,
-)
+from singimpact.certificates import checker
 from singimpact.dynamics.chatter import ChatterLimit
 from singimpact.dynamics.gamma_proof.proof import CertifiedGamma
 from singimpact.flights.results import CertifiedImpact, Flight
@@ -66,7 +55,7 @@ class Certificate:
         """Write the certificate to a file."""
         write_text(path, self.text)
 
-    def check(self, seconds: int = SECONDS) -> None:
+    def check(self, seconds: int = checker.SECONDS) -> None:
         """Let the second program enclose the motion again, in a process of its own, within so many seconds of CPU.
 
         Raises
@@ -82,7 +71,7 @@ class Certificate:
             raise InputError(f"the certificate is refused: {reason}")
 
     def __repr__(self) -> str:
-        return f"<certificate of {sentence(self.content)}>"
+        return f"<certificate of {checker.sentence(self.content)}>"
 
 
 @checked_keywords
@@ -150,18 +139,18 @@ def certify(result: Any) -> Certificate:
 
 def _sealed(statement: str, model: Oscillator, numbers: dict[str, Any]) -> Certificate:
     require_rebound(model, "a certificate")
-    if model.parametric and statement not in IN_TIME:
+    if model.parametric and statement not in checker.IN_TIME:
         raise InputError(
             f"the {statement} is not certified in a file: f = {model.f} depends on t, and of such a model the second "
-            f"program checks {', '.join(IN_TIME)}"
+            f"program checks {', '.join(checker.IN_TIME)}"
         )
-    if model.upper is not None and (statement not in BETWEEN or numbers.get("kind") in TOUCHING):
+    if model.upper is not None and (statement not in checker.BETWEEN or numbers.get("kind") in checker.TOUCHING):
         raise InputError(
             f"the {statement} is not certified in a file: of a model with two walls the second program checks "
-            f"{', '.join(BETWEEN)} without a graze"
+            f"{', '.join(checker.BETWEEN)} without a graze"
         )
-    content = {"schema": SCHEMA, "statement": statement, "model": model.to_dict(), **numbers}
-    return Certificate({**content, "digest": digest_of(content)})
+    content = {"schema": checker.SCHEMA, "statement": statement, "model": model.to_dict(), **numbers}
+    return Certificate({**content, "digest": checker.digest_of(content)})
 
 
 def _of_orbit(orbit: EnclosedOrbit) -> dict[str, Any]:
@@ -195,7 +184,6 @@ def _narrow(number: Certified) -> Certified:
 
 
 def _of_limit(limit: ChatterLimit) -> Certificate:
-    """The certificate of the end of a chatter."""
     if limit.certified is None or limit.oscillator is None:
         raise InputError(
             "the chatter limit is not certified: it needs digits=, one state, and a number for restitution"
@@ -209,9 +197,8 @@ def _of_limit(limit: ChatterLimit) -> Certificate:
 
 
 def _of_event(event: EnclosedEvent) -> Certificate:
-    """The certificate of an event."""
-    if event.kind not in KINDS or event.oscillator is None:
-        raise InputError(f"a {event.kind} has no certificate as a file: only a {' or a '.join(KINDS)} has one")
+    if event.kind not in checker.KINDS or event.oscillator is None:
+        raise InputError(f"a {event.kind} has no certificate as a file: only a {' or a '.join(checker.KINDS)} has one")
     if event.over not in event.oscillator.parameters:
         raise InputError(
             f"an event over the {event.over} has no certificate as a file: only those over a parameter have"
@@ -226,14 +213,13 @@ def _of_event(event: EnclosedEvent) -> Certificate:
         "parameter": event.parameter.as_dict(),
         "states": states,
     }
-    if event.kind in TOUCHING:
+    if event.kind in checker.TOUCHING:
         states[0]["v"] = {"value": "0", "radius": event.tau[0].as_dict()["radius"]}
         statement["unique_within"] = str(min(event.unique_within, UNIQUE))
     return _sealed("event", event.oscillator, statement)
 
 
 def _of_border(orbit: BorderOrbit) -> Certificate:
-    """The certificate of a border orbit."""
     if orbit.certified is None or orbit.oscillator.period is None:
         why = "is not certified" if orbit.certified is None else "of a model without a period has no file"
         raise InputError(f"the border orbit {why}: {'; '.join(orbit.notes) or 'ask for digits= and a period'}")
@@ -254,7 +240,7 @@ def _over(over: str, sealed: Certificate) -> Certificate:
         return sealed
     model = {**sealed.content["model"], over: over}
     content = {name: entry for name, entry in sealed.content.items() if name != "digest"} | {"model": model}
-    return Certificate({**content, "digest": digest_of(content)})
+    return Certificate({**content, "digest": checker.digest_of(content)})
 
 
 def _of_horseshoe(horseshoe: Horseshoe) -> dict[str, Any]:
@@ -267,7 +253,6 @@ def _of_horseshoe(horseshoe: Horseshoe) -> dict[str, Any]:
 
 
 def _of_sets(horseshoe: Horseshoe, pairs: tuple[str, ...]) -> dict[str, Any]:
-    """The loops and the sets, as text."""
     sets = [
         {name: [str(x) for x in getattr(crossed, name)] for name in pairs}
         | {"frame": [[str(x) for x in row] for row in crossed.frame]}
@@ -333,7 +318,6 @@ def _with_room(number: Certified) -> dict[str, str]:
 
 
 def _bound(ball: Any, factor: float) -> str:
-    """A bound, larger by a factor or smaller."""
     return str(float(f"{factor * float(ball.mid()):.6g}"))
 
 
@@ -346,7 +330,7 @@ def _wider(number: Certified) -> dict[str, str]:
 
 
 @checked_keywords
-def read_certificate(path: Any, seconds: int = SECONDS) -> Certificate:
+def read_certificate(path: Any, seconds: int = checker.SECONDS) -> Certificate:
     """A certificate from a file, once the second program has accepted it within so many seconds of CPU.
 
     Raises
@@ -362,10 +346,10 @@ def read_certificate(path: Any, seconds: int = SECONDS) -> Certificate:
     2.05e-22
     """
     try:
-        content = read(path)
+        content = checker.read(path)
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror}") from None
-    except Refused as reason:
+    except checker.Refused as reason:
         raise InputError(f"{path} is no certificate: {reason}") from None
     certificate = Certificate(content if isinstance(content, dict) else {})
     certificate.check(seconds)

@@ -388,7 +388,6 @@ def certify_command(files: tuple[str, ...], tau: str | None, v: str | None, **op
 
 
 def _gamma(files: tuple[str, ...], tau: str | None, options: dict[str, Any]) -> None:
-    """`certify gamma [MODEL]`."""
     from singimpact.certificates.certificate import certify
 
     taken = [
@@ -428,7 +427,6 @@ def _made(model: Any, kind: str, near: State, options: dict[str, Any]) -> Any:
 
 
 def _border(model: Any, given: tuple[str, float, float], digits: int) -> Any:
-    """The first border orbit between two values."""
     from singimpact.branches.border import border_orbits
 
     over, low, high = given

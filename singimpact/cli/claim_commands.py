@@ -128,7 +128,6 @@ def _told(value: Any) -> str:
 
 
 def _item(item: dict[str, Any]) -> str:
-    """A certificate or a trial on one line."""
     if "says" in item:
         return f"{item['kind']}: {item['says']}"
     says = f"printed {item['printed']}, corrected {item['corrected']}"

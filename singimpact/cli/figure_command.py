@@ -35,7 +35,7 @@ DPI = 200  # of a PNG: figures are as small as they are printed
 def figure_command(which: str, output: str, kind: str, serif: bool, dark: bool, data: bool, as_json: bool) -> None:
     """Draw figure N of the paper, 1 to 17, or all, each computed from an oscillator, and list the claims that it shows.
 
-    B1 to B10 are figures of what is beyond the paper; `beyond` draws them all.
+    B1 to B11 are figures of what is beyond the paper; `beyond` draws them all.
 
     Letters are 8 points high at the size of the file, which is at most 6.9 inches wide.
 

@@ -232,7 +232,6 @@ def _place(html: str | None, output: str | None) -> str | None:
 
 
 def _show(page: str, file: str | None) -> None:
-    """Into the file, or into a browser's window."""
     if file is not None:
         write_text(file, page)
         return

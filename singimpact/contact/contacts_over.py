@@ -161,13 +161,11 @@ def contact_points(
 
 
 def _acceleration(osc: Oscillator, names: Sequence[str]) -> Expression:
-    """a_c as a tree in t and the numbers."""
     wall = Name(CLEARANCE) if CLEARANCE in names else osc.clearance
     return rest_acceleration(osc.force(names), osc.forcing(names), wall)
 
 
 def _ends(name: str, pair: object, value: float) -> tuple[Fraction, Fraction]:
-    """The ends of a number."""
     middle = Fraction(value)
     reach = AROUND * (abs(middle) or 1)
     try:
@@ -193,7 +191,6 @@ def _times(
 
 
 def _point(osc: Oscillator, tree: Expression, names: Sequence[str], box: Place, digits: int) -> ContactPoint:
-    """A contact point in its box."""
     order = len(box)
     tau, *values = (from_ball(ball, digits) for ball in box)
     doubles = (0.0 if number.contains(0) else float(number.value) for number in (tau, *values))

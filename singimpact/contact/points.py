@@ -232,7 +232,6 @@ def _beside(function: Expression, zero: Zero, turn: Fraction, slope: int) -> lis
 
 
 def _within(points: list[TangencyPoint], oscillator: Oscillator) -> list[TangencyPoint]:
-    """The points in [0, T), each once."""
     if oscillator.period is None:
         return sorted(points, key=lambda point: point.tau)
     period = as_float(oscillator.period)

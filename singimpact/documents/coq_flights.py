@@ -88,7 +88,6 @@ def _phases(osc: Oscillator, tau: float, v: float, length: float) -> list[Fracti
 
 
 def _text(tree: Expression) -> str:
-    """A number for Coq."""
     exact, text = as_fraction(tree), str(tree)
     need(
         exact is not None or not re.search(r"\*\*|[a-z]", text.replace("pi", "")),

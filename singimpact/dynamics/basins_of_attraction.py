@@ -361,7 +361,6 @@ def placed(
 
 
 def _window(model: Oscillator, tau: Any, v: Any) -> tuple[tuple[float, float], tuple[float, float]]:
-    """The ends of both axes of a window."""
     if not phases_of(model).clocked:
         wall = as_float(model.clearance)
         above = np.inf if model.upper is None else as_float(model.upper)

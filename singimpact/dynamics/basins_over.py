@@ -13,16 +13,7 @@ import numpy as np
 
 from singimpact.algebra.numbers import Array, as_float, constant
 from singimpact.cases import in_threads
-from singimpact.dynamics.basins_of_attraction import (
-    SETTINGS,
-    ClassGrid,
-    case_of,
-    checked_wall,
-    classified,
-    for_ever,
-    named,
-    placed,
-)
+from singimpact.dynamics import basins_of_attraction
 from singimpact.dynamics.behaviours import JUMP, LongRun, matched
 from singimpact.inputs import whole
 from singimpact.oscillator.model import Oscillator
@@ -31,7 +22,7 @@ from singimpact.surface.curve import window_ends
 
 
 @dataclass(frozen=True, repr=False)
-class BasinsOver(ClassGrid):
+class BasinsOver(basins_of_attraction.ClassGrid):
     """Shares of basins over a number of the model.
 
     Attributes
@@ -95,7 +86,7 @@ def basins_over(
     between: Any,
     window: tuple[Any, Any] = (None, None),
     values: int = 50,
-    impacts: int = SETTINGS.impacts,
+    impacts: int = basins_of_attraction.SETTINGS.impacts,
     wall: Any = None,
     **sampling: Any,
 ) -> BasinsOver:
@@ -115,7 +106,7 @@ def basins_over(
     >>> found.share.tolist(), found.attractors[0].name
     ([[1.0], [1.0], [1.0]], '(1, 1) orbit')
     """
-    side = checked_wall(model, wall)
+    side = basins_of_attraction.checked_wall(model, wall)
     model = with_number(model, over)
     count = whole("states", sampling.pop("states", 400), 1, 10**6)
     seed = whole("seed", sampling.pop("seed", 0), 0, 2**63)
@@ -123,11 +114,13 @@ def basins_over(
     numbers = np.linspace(*window_ends(over, between), whole("values", values, 2, 10**5))
     places = np.random.default_rng(seed).random((2, count))
     models = [model.replace(**{over: value}) for value in numbers.tolist()]
-    samples = [placed(moved, window, places, side, impacts) for moved in models]
-    tables = in_threads(classified, [case_of(*sample) for sample in samples], sampling)
+    samples = [basins_of_attraction.placed(moved, window, places, side, impacts) for moved in models]
+    tables = in_threads(
+        basins_of_attraction.classified, [basins_of_attraction.case_of(*sample) for sample in samples], sampling
+    )
     studies = [study for study, _ in samples]
     several = [
-        named(study, for_ever(study, states, np.asarray(table))[0])
+        basins_of_attraction.named(study, basins_of_attraction.for_ever(study, states, np.asarray(table))[0])
         for (study, states), table in zip(samples, tables, strict=True)
     ]
     units = [study.phases.unit if study.phases.clocked else np.inf for study in studies]

@@ -7,22 +7,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.numbers import Array, as_float
-from singimpact.dynamics.attractors import (
-    AWAY,
-    CHAOS,
-    CHATTER,
-    CYCLE,
-    GONE,
-    LEVEL,
-    OTHER,
-    PLACES,
-    RESPONSE,
-    RESTING,
-    SENSITIVE,
-    STILL,
-    STUCK,
-    states_of,
-)
+from singimpact.dynamics import attractors
 from singimpact.dynamics.settling import Study
 from singimpact.flights.horizons import horizon_of
 from singimpact.flights.orbits import signed_iterate
@@ -31,13 +16,13 @@ from singimpact.flights.orbits import signed_iterate
 # which on they are two attractors; the (1, 1) orbit of x'' + x = cos 2t moves by 0.15 from c = 0.25 to 0.3
 JUMP = 0.25
 KINDS = {
-    OTHER: "not decided",
-    CHAOS: "chaotic",
-    GONE: "never returns",
-    AWAY: "no impact",
-    STUCK: "unresolved",
-    SENSITIVE: "sensitive",
-    LEVEL: "continuum",
+    attractors.OTHER: "not decided",
+    attractors.CHAOS: "chaotic",
+    attractors.GONE: "never returns",
+    attractors.AWAY: "no impact",
+    attractors.STUCK: "unresolved",
+    attractors.SENSITIVE: "sensitive",
+    attractors.LEVEL: "continuum",
 }
 
 
@@ -108,27 +93,27 @@ def behaviour(study: Study, row: Array) -> LongRun:
     """
     model, (code, tau, v) = study.model, row.tolist()
     none, wall = np.zeros(0), as_float(model.clearance)
-    if code >= PLACES:
-        n, k = divmod(int(code), PLACES)
-        times, speeds = states_of(model, int(code), tau, v)
+    if code >= attractors.PLACES:
+        n, k = divmod(int(code), attractors.PLACES)
+        times, speeds = attractors.states_of(model, int(code), tau, v)
         # of a cycle the sum of its flights, each from time 0
         period = k * study.phases.unit or float(signed_iterate(model, 0 * speeds, speeds, 1).tau.sum())
         letters = "".join("lu"[speed < 0] for speed in speeds.tolist())
         word = "" if model.upper is None else min(letters[i:] + letters[:i] for i in range(n))
         return LongRun("orbit", n, k, times, speeds, period=period, word=word)
-    if code == CYCLE:
+    if code == attractors.CYCLE:
         return LongRun("orbit", 0, 0, none, none, period=tau, x=wall + v)
-    if code == STILL:
+    if code == attractors.STILL:
         return LongRun("equilibrium", 0, 0, none, none, x=wall + tau)
-    if code == CHATTER:
+    if code == attractors.CHATTER:
         lifted = study.lift_offs[int(tau) :][:1] if tau >= 0 else ()
         walls = [side for _, side in lifted] if tau >= 0 else [int(-1 - tau)]
         word = "lu"[walls[0]] if walls and model.upper is not None else ""
         at = np.array([phase for phase, _ in lifted])
         return LongRun("chatter" if tau >= 0 else "rest", np.inf, int(v), at, 0 * at, word=word)
-    if code == RESPONSE:
+    if code == attractors.RESPONSE:
         return LongRun("quasi-periodic", 0, 0, np.array([tau]), np.array([v]))
-    if code == RESTING:
+    if code == attractors.RESTING:
         return LongRun("chatter", np.inf, 0, none, none)
     return LongRun(KINDS[int(code)], 0, 0, none, none, study.impacts, horizon_of(model, None))
 

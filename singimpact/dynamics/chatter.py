@@ -278,7 +278,6 @@ def _look_ahead(osc: Oscillator, going: "list[_Flown]") -> None:
 
 
 def _differentiate(osc: Oscillator, flown: "list[_Flown]") -> None:
-    """D G of every impact of some sequences."""
     launches = [launch for one in flown for launch in zip(one.times[:-1], one.speeds[:-1], one.walls[:-1], strict=True)]
     tau, v, walls = np.array(launches).reshape(-1, 3).T
     wall = None if osc.upper is None else walls.astype(np.int8)

@@ -261,7 +261,6 @@ def _cases(
 
 
 def _times(model: Oscillator, sample: Any, start: Array, end: float) -> Array:
-    """The times of samples."""
     if sample is None:
         return np.zeros(0)
     if np.ndim(sample):

@@ -157,7 +157,6 @@ def fit(osc: Oscillator, data: Any, over: Sequence[str], *, noise: Any = None) -
 
 
 def _columns(data: Any) -> dict[str, Array]:
-    """Measured columns by name."""
     item = data if isinstance(data, Mapping) else {name: getattr(data, name, None) for name in NAMES}
     order = [name for name in NAMES if name in item] + [str(name) for name in item if name not in NAMES]
     columns = {name: float_array(name, item[name]) for name in order if item[name] is not None}

@@ -65,7 +65,6 @@ def free_fates(model: Oscillator, height: Array, xdot: Array) -> Array:
 
 
 def _fates(model: Oscillator, height: Array, xdot: Array) -> Array:
-    """`free_fates` with the lower wall alone."""
     rows = np.full((height.size, 3), np.nan)
     for first in range(0, height.size, SETTINGS.block):
         chosen = np.arange(first, min(first + SETTINGS.block, height.size))

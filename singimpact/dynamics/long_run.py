@@ -113,7 +113,6 @@ def _rest_of(model: Oscillator, start: float) -> float:
 
 
 def _lifted(model: Oscillator, phase: float) -> float:
-    """A double at which the mass lifts off."""
     back = as_float(model.period) / 64
     while acceleration(model, np.array([phase - back]))[0] >= 0:
         back /= 2

@@ -297,7 +297,6 @@ class Growth:
         return matrices, areas
 
     def _bend(self, which: Array, at: Array, velocity: Array) -> Array:
-        """x'' at hits, in the frame of the model."""
         lives = self.lives
         osc, letters = lives.members.osc, lives.members.letters
         state = {name: values[which] for name, values in lives.members.over.items()}

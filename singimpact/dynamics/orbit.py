@@ -190,7 +190,6 @@ class Orbit(Result):
 
     @property
     def _ending(self) -> str:
-        """The motion after the last event, in words."""
         if self._last_kind != "no_return":
             return ENDINGS[self._last_kind]
         proved = np.isinf(self.end)

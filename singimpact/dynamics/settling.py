@@ -11,21 +11,7 @@ from math import ceil, log
 import numpy as np
 
 from singimpact.algebra.numbers import Array, as_float
-from singimpact.dynamics.attractors import (
-    AWAY,
-    CHAOS,
-    CHATTER,
-    GONE,
-    OTHER,
-    SENSITIVE,
-    SETTINGS as ATTRACTORS,
-    STUCK,
-    Attractor,
-    apart,
-    caught,
-    closing_orbits,
-    new_attractors,
-)
+from singimpact.dynamics import attractors
 from singimpact.dynamics.free_motion import free_fates
 from singimpact.dynamics.long_run import chaotic, next_lift_off
 from singimpact.dynamics.phases import Phases, phases_of
@@ -106,12 +92,14 @@ def classify(study: Study, tau: Array, v: Array) -> Array:
     """
     run = _Run(study, tau, v)
     run.settle()
-    return np.column_stack([run.rows, run.flown, run.rows[:, 0] == CHATTER])
+    return np.column_stack([run.rows, run.flown, run.rows[:, 0] == attractors.CHATTER])
 
 
 def settles(rows: Array) -> Array:
     """Whether rows of `classify` have reached an attractor."""
-    return np.asarray((rows[:, 0] >= CHATTER) & ~np.isin(rows[:, 0], (CHAOS, SENSITIVE)))
+    return np.asarray(
+        (rows[:, 0] >= attractors.CHATTER) & ~np.isin(rows[:, 0], (attractors.CHAOS, attractors.SENSITIVE))
+    )
 
 
 def parted(study: Study, tau: Array, v: Array, impacts: Array) -> Array:
@@ -129,7 +117,7 @@ def parted(study: Study, tau: Array, v: Array, impacts: Array) -> Array:
         count += SETTINGS.watched
         at[:, left], speed[:, left] = study.phases.of(ends.tau), ends.v
         one, other = ((at[side, left], speed[side, left]) for side in (0, 1))
-        distance = apart(one, other, study.phases, study.fast)
+        distance = attractors.apart(one, other, study.phases, study.fast)
         flying = (ends.status == 0).all(axis=0)
         # one ends its flights where the other goes on
         torn = (ends.status[0] == 0) != (ends.status[1] == 0)
@@ -146,7 +134,7 @@ class _Run:
         self.rows, self.open = np.zeros((tau.size, 3)), np.arange(tau.size)
         # impacts after which each was decided
         self.flown = np.zeros(tau.size, dtype=np.int64)
-        self.known: list[Attractor] = []
+        self.known: list[attractors.Attractor] = []
         self.count = 0
 
     def settle(self) -> None:
@@ -173,9 +161,9 @@ class _Run:
         """Put in the rows of motions that met no wall for long; whether these meet it all the same."""
         fates = free_fates(self.study.model, height, xdot)
         late = np.isnan(fates[:, 0])
-        certain = ~late & ((fates[:, 0] != AWAY) | (rows[free, 0] != GONE))
+        certain = ~late & ((fates[:, 0] != attractors.AWAY) | (rows[free, 0] != attractors.GONE))
         rows[free[certain]] = fates[certain]
-        return np.asarray(late & (rows[free, 0] != GONE))
+        return np.asarray(late & (rows[free, 0] != attractors.GONE))
 
     def _first_stage(self) -> None:
         """The number of impacts in which a plain chatter becomes slow, with searches at doubling distances."""
@@ -202,7 +190,7 @@ class _Run:
             back = places < 0
             if looks % SETTINGS.searched:
                 now, then = (self.tau[self.open], self.v[self.open]), (tau[self.open], v[self.open])
-                back &= apart(now, then, self.study.phases, self.study.fast) < ATTRACTORS.close
+                back &= attractors.apart(now, then, self.study.phases, self.study.fast) < attractors.SETTINGS.close
             if back.any():
                 places = self._search(places, np.flatnonzero(back), SETTINGS.long_period)
             self._take(places)
@@ -214,14 +202,14 @@ class _Run:
         if self.open.size:
             study, at = self.study, self.open
             self.rows[at] = 0.0
-            self.rows[at[chaotic(study.model, self.tau[at], self.v[at], study.fast)], 0] = CHAOS
+            self.rows[at[chaotic(study.model, self.tau[at], self.v[at], study.fast)], 0] = attractors.CHAOS
             self.flown[at] = self.count
 
-    def _look(self, most: int = ATTRACTORS.most_impacts) -> None:
+    def _look(self, most: int = attractors.SETTINGS.most_impacts) -> None:
         """States that close by themselves within so many impacts."""
         study, at = self.study, self.open
-        found = closing_orbits(study.model, self.tau[at], self.v[at], study.fast, most)
-        self._decide(found[0] != OTHER, np.stack(found, axis=1))
+        found = attractors.closing_orbits(study.model, self.tau[at], self.v[at], study.fast, most)
+        self._decide(found[0] != attractors.OTHER, np.stack(found, axis=1))
 
     def _decide(self, chosen: Array, rows: Array) -> None:
         """Put rows in for the chosen of the open states."""
@@ -248,7 +236,7 @@ class _Run:
             over[late] = ~(np.abs(self.v[at[late]]) > 0)
             # off a wall that pushes, flights of so slow a launch are grazes to rounding; a mass at rest leaves as one
             over |= ~rests & (np.abs(ends.v) <= SETTINGS.rest * study.fast) & ~((ends.v == 0) & study.model.plastic)
-        rows[rests, 0] = CHATTER
+        rows[rests, 0] = attractors.CHATTER
         resting = np.flatnonzero(rests)
         ended_at = at_rest(study, self.tau[at[resting]], self.v[at[resting]])
         for wall, (_, there) in enumerate(each_wall(study.model, self.v[at[resting]])):
@@ -264,16 +252,16 @@ class _Run:
 
     def _caught(self) -> Array:
         """Of each open state, the place of the known attractor that it is near, or -1."""
-        return caught(self.known, self.study.model, self.tau[self.open], self.v[self.open], self.study.fast)
+        return attractors.caught(self.known, self.study.model, self.tau[self.open], self.v[self.open], self.study.fast)
 
-    def _search(self, places: Array, chosen: Array, most: int = ATTRACTORS.most_impacts) -> Array:
+    def _search(self, places: Array, chosen: Array, most: int = attractors.SETTINGS.most_impacts) -> Array:
         """The places with those of attractors that a sample of the chosen open states has reached."""
         study, at = self.study, self.open
         # orbits that are tested for a new attractor
         sample = chosen[:: max(chosen.size // 24, 1)]
         before = len(self.known)
-        self.known += new_attractors(study.model, self.tau[at[sample]], self.v[at[sample]], study.fast, most)
-        again = caught(self.known[before:], study.model, self.tau[at], self.v[at], study.fast)
+        self.known += attractors.new_attractors(study.model, self.tau[at[sample]], self.v[at[sample]], study.fast, most)
+        again = attractors.caught(self.known[before:], study.model, self.tau[at], self.v[at], study.fast)
         return np.where((places < 0) & (again >= 0), again + before, places)
 
     def _take(self, places: Array) -> None:
@@ -288,7 +276,9 @@ class _Run:
 def ended(status: Array) -> Array:
     """Rows of states whose flights have ended so."""
     rows = np.zeros((status.size, 3))
-    rows[:, 0] = np.select([status == Status.no_return, status == Status.escaped], [AWAY, GONE], STUCK)
+    rows[:, 0] = np.select(
+        [status == Status.no_return, status == Status.escaped], [attractors.AWAY, attractors.GONE], attractors.STUCK
+    )
     return rows
 
 

@@ -95,7 +95,6 @@ class SwanConfiguration(Result):
         return any(np.isclose([tau, t], self.points[name], rtol=0, atol=1e-12).all() for name in names)
 
     def _speed(self, tau: float, t: float) -> float:
-        """x' after t of the flight from rest at tau."""
         return float(RestFlights(self.model).ends(np.array([tau]), np.array([t]))[1][0])
 
     @cached_property

@@ -120,7 +120,6 @@ def _root(series: Sequence[Any], power: int, ring: Any) -> list[Any]:
 
 
 def _powers(series: Sequence[Any], count: int, ring: Any) -> list[list[Any]]:
-    """The powers 0..count - 1 of a series."""
     zero = ring.rational(Fraction(0))
     found = [[ring.rational(Fraction(1)), *[zero] * (len(series) - 1)]]
     for _ in range(count - 1):

@@ -16,7 +16,7 @@ _FILES = {
     "claims.deciding": "decide effective",
     "claims.engine": "imported_by keep key_of recall",
     "claims.index": "COLOURS as_svg claims_in colour_of",
-    "claims.next_sigma": "next_sigma",
+    "claims.sections.section4_trials": "next_sigma",
     "claims.sections.section6_exact": "crossing near_the_swan nonzero scaling_check",
     "claims.verdicts": "VerdictTable verify",
     "claims.verifiers": "every sample",
@@ -34,5 +34,6 @@ _FILES = {
     "sections.stored_sections": "cache kept_sections marks_of",
     "sections.section_formulas": "with_Q",
     "trials.true_orbits": "System gamma_cases resting_times scipy_flow",
+    "trials.universal_foot": "elastic",
 }
 __getattr__ = names_of(__name__, _FILES)

@@ -13,21 +13,9 @@ from singimpact.dynamics.basins_over import BasinsOver
 from singimpact.dynamics.regions import Regions
 from singimpact.inputs import refuse
 from singimpact.oscillator.moving_number import value_of, with_number
+from singimpact.scenes import style
 from singimpact.scenes.label_places import legend_below, legend_entries
 from singimpact.scenes.scene import LAYERS, Scene
-from singimpact.scenes.style import (
-    BLACK,
-    CHATTERED,
-    CLASS_ORBITS,
-    CLASSES,
-    GREY,
-    LETTERS,
-    OPEN,
-    PENS,
-    VERMILLION,
-    WHITE,
-    new_axes,
-)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -52,7 +40,7 @@ def draw_regions(result: Regions, axes: Any = None) -> Any:
     """
     if result.values is None:
         return draw_basins(result, axes)
-    axes = new_axes(7.2, 5.2) if axes is None else axes
+    axes = style.new_axes(7.2, 5.2) if axes is None else axes
     image = axes.imshow(
         result.values,
         origin="lower",
@@ -64,7 +52,7 @@ def draw_regions(result: Regions, axes: Any = None) -> Any:
     )
     axes.figure.colorbar(image, ax=axes, label=MEASURES.get(result.of, result.of))
     (across, _), (up, _) = result.sides
-    axes.set(xlabel=LETTERS.get(across, across), ylabel=LETTERS.get(up, up))
+    axes.set(xlabel=style.LETTERS.get(across, across), ylabel=style.LETTERS.get(up, up))
     return axes
 
 
@@ -83,15 +71,15 @@ def draw_basins_over(result: BasinsOver, axes: Axes) -> Axes:
     order, names, _ = zip(*result.classes, strict=True)
     shares = result.share[:, list(order)].T
     layers = axes.stackplot(
-        result.values, shares, colors=class_colors([result])[0], edgecolor=WHITE, linewidth=0.4, step="mid"
+        result.values, shares, colors=class_colors([result])[0], edgecolor=style.WHITE, linewidth=0.4, step="mid"
     )
     sums, n = shares.cumsum(axis=0), result.codes.shape[1]
     for below in sums[:-1]:
         # one state more in and one more out, as in `BasinsOver.error`
         likely = (n * below + 1) / (n + 2)
         error = np.sqrt(likely * (1 - likely) / (n + 3)) * ((below > 0) & (below < 1))
-        axes.errorbar(result.values, below, error, fmt="none", ecolor=BLACK, elinewidth=0.7, gid="standard error")
-    axes.set(xlabel=LETTERS.get(result.over, result.over), ylabel="share of the states", ylim=(0, 1))
+        axes.errorbar(result.values, below, error, fmt="none", ecolor=style.BLACK, elinewidth=0.7, gid="standard error")
+    axes.set(xlabel=style.LETTERS.get(result.over, result.over), ylabel="share of the states", ylim=(0, 1))
     axes.set_xlim(result.values[0], result.values[-1])
     return legend_below(axes, dict(list(zip(names, layers, strict=True))[:12]), 3 if max(map(len, names)) < 36 else 2)
 
@@ -113,10 +101,10 @@ def class_colors(several: Sequence[ClassGrid]) -> list[list[str]]:
             names.append(name)
             key = (*name, names.count(name))  # the second of two equal (n, k)
             if key not in shades:
-                palette = CHATTERED if kind == "chatter" else CLASS_ORBITS
+                palette = style.CHATTERED if kind == "chatter" else style.CLASS_ORBITS
                 family = "chatter" if kind == "chatter" else "orbit"
-                shades[key] = CLASSES.get(kind) or palette[used[family] % len(palette)]
-                if kind not in CLASSES:
+                shades[key] = style.CLASSES.get(kind) or palette[used[family] % len(palette)]
+                if kind not in style.CLASSES:
                     used[family] += 1
             colors.append(shades[key])
         colorings.append(colors)
@@ -128,7 +116,7 @@ def draw_first_chatter(found: Basins, axes: Any = None) -> Any:
     chosen = found.first_chatter_completes
     named = [(chosen, "first chatter completes"), (~chosen, "it does not")]
     layers = [(where, f"{name}, {100 * where.mean():.3g} %") for where, name in named]
-    return _painted(found, layers, [VERMILLION, CLASSES["not decided"]], axes)
+    return _painted(found, layers, [style.VERMILLION, style.CLASSES["not decided"]], axes)
 
 
 def _box(found: ClassGrid) -> tuple[float, float, float, float]:
@@ -142,16 +130,16 @@ def _painted(basins: ClassGrid, layers: list[tuple[Any, str]], colors: list[str]
     from matplotlib.colors import to_rgb
     from matplotlib.patches import Patch
 
-    axes = new_axes(7.2, 5.2) if axes is None else axes
+    axes = style.new_axes(7.2, 5.2) if axes is None else axes
     image, entries = np.empty((*basins.codes.shape, 3)), dict[str, Any]()
     for (where, label), color in zip(layers, colors, strict=True):
         image[where] = to_rgb(color)
-        entries[label] = Patch(facecolor=color, edgecolor=GREY, label=label)
+        entries[label] = Patch(facecolor=color, edgecolor=style.GREY, label=label)
     axes.imshow(
         image, origin="lower", extent=_box(basins), aspect="auto", interpolation="nearest", gid="basins", zorder=0
     )
     names = [name for name, _ in basins.sides]
-    labels = {**LETTERS, **(LABELS if isinstance(basins, Basins) else {})}
+    labels = {**style.LETTERS, **(LABELS if isinstance(basins, Basins) else {})}
     axes.set(**dict(zip(("xlabel", "ylabel"), (labels.get(name, name) for name in names), strict=True)))
     shown = dict(list(entries.items())[:12])
     return legend_below(axes, shown, 3 if max(map(len, shown)) < 36 else 2)
@@ -181,7 +169,7 @@ def draw_both_sides(sides: BothSides, axes: Any) -> Any:
     first = min(side.tau[0] for side in sides.basins)
     for one in pair:
         phase = first + np.mod(sides.transition.tau - first, np.ptp(sides.basins[0].tau))
-        one.plot(phase, 0.0, "^", **OPEN, markersize=7, clip_on=False, zorder=8)
+        one.plot(phase, 0.0, "^", **style.OPEN, markersize=7, clip_on=False, zorder=8)
         one.set_xlabel(rf"launch phase $\tau$; {sides.transition.kind} at the triangle")
     pair[1].set_ylabel("")
     return pair
@@ -197,7 +185,7 @@ def _draw(axes: Any, model: Any, side: Basins, colors: list[str]) -> None:
     for handle in entries.values():
         handle.set_alpha(FAINT)
     for name, pen in CURVES.items():
-        layer, look = LAYERS[name], PENS[pen].line() | {"linewidth": WIDTHS[name]}
+        layer, look = LAYERS[name], style.PENS[pen].line() | {"linewidth": WIDTHS[name]}
         for curve in scene.results.get(layer.need):
             (line,) = axes.plot(*curve.points.T, **look, zorder=4)
             entries.setdefault(layer.label, line)

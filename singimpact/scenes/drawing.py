@@ -28,6 +28,7 @@ from singimpact.dynamics.orbit import Orbit, Section
 from singimpact.dynamics.regions import Regions
 from singimpact.dynamics.release_map import ReleaseMap
 from singimpact.inputs import InputError, checked_keywords, refuse, takes_two_walls
+from singimpact.scenes import orbit_picture
 from singimpact.scenes.basins_picture import draw_basins, draw_basins_over, draw_both_sides, draw_regions
 from singimpact.scenes.branch_picture import (
     bifurcation_sheet,
@@ -37,15 +38,6 @@ from singimpact.scenes.branch_picture import (
     draw_event_curves,
 )
 from singimpact.scenes.label_places import legend_below, legend_entries, legend_mark
-from singimpact.scenes.orbit_picture import (
-    SIZE as SHEET,
-    draw_fit,
-    draw_orbit,
-    draw_periodic,
-    draw_release_map,
-    draw_section,
-    orbit_sheet,
-)
 from singimpact.scenes.scene import Scene
 from singimpact.scenes.style import BLACK, BLUE, DASHES, GREEN, OPEN, ORANGE, PENS, WHITE, darken
 from singimpact.surface.curve import Curve
@@ -172,7 +164,6 @@ def _turns(limits: tuple[float, float], period: float, fresh: bool) -> list[floa
 
 
 def _cuts(found: Manifold, turn: float, axes: Axes, entries: dict[str, Any]) -> None:
-    """The states at which manifolds are cut."""
     # more discontinuities are not marked
     if not found.cuts or len(found.cuts) > 60:
         return
@@ -231,7 +222,6 @@ def _image_of_set(found: Horseshoe, one: CrossedSet, impacts: int) -> Array:
 
 
 def _seen(points: Array, home: CrossedSet, found: Horseshoe) -> Array:
-    """States in the coordinates of N."""
     assert found.oscillator.period is not None
     period = as_float(found.oscillator.period)
     away = points - [float(part) for part in home.centre]
@@ -297,14 +287,13 @@ def _sheet(thing: Any) -> Array:
     """The axes of a figure of pyplot that shows an orbit or a diagram from several sides."""
     diagram, *branches = thing if isinstance(thing, list | tuple) else [thing]
     if isinstance(diagram, Orbit):
-        return np.array(orbit_sheet(diagram, _figure(SHEET)).axes, dtype=object)
+        return np.array(orbit_picture.orbit_sheet(diagram, _figure(orbit_picture.SIZE)).axes, dtype=object)
     if not isinstance(diagram, Bifurcation):
         raise refuse("thing to plot as a sheet", type(diagram).__name__, "an orbit, or a diagram and branches over it")
     return np.array(bifurcation_sheet(diagram, branches, _figure(SIZES[1])).axes, dtype=object)
 
 
 def _children(axes: Any) -> list[Any]:
-    """The artists on axes, or on several."""
     return [child for panel in np.ravel(axes) for child in panel.get_children()]
 
 
@@ -381,11 +370,11 @@ PICTURES: tuple[tuple[type, bool, New, Drawer], ...] = (
     (Crossings, True, HIGH, draw_crossings),
     (EnclosedCrossing, True, HIGH, draw_certified_crossing),
     (Horseshoe, True, WIDE, draw_horseshoe),
-    (Orbit, True, WIDE, draw_orbit),
-    (PeriodicOrbit, True, WIDE, draw_periodic),
-    (Section, True, HIGH, draw_section),
-    (Fit, True, WIDE, draw_fit),
-    (ReleaseMap, True, HIGH, draw_release_map),
+    (Orbit, True, WIDE, orbit_picture.draw_orbit),
+    (PeriodicOrbit, True, WIDE, orbit_picture.draw_periodic),
+    (Section, True, HIGH, orbit_picture.draw_section),
+    (Fit, True, WIDE, orbit_picture.draw_fit),
+    (ReleaseMap, True, HIGH, orbit_picture.draw_release_map),
     (Basins, True, HIGH, draw_basins),
     (BasinsOver, True, HIGH, draw_basins_over),
     (Regions, True, HIGH, draw_regions),

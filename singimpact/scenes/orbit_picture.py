@@ -53,7 +53,6 @@ def draw_orbit(orbit: Orbit, axes: Axes, since: float | None = None) -> Axes:
 
 
 def _walls(orbit: Orbit, axes: Axes) -> None:
-    """Hatched areas behind the walls."""
     low, high = axes.get_ylim()
     behind = [(low, as_float(orbit.oscillator.clearance))]
     if orbit.oscillator.upper is not None:

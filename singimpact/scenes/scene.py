@@ -55,7 +55,6 @@ def _jumps(axes: object, curves: list[Curve], label: str) -> None:
 
 
 def _first_hits(pen: str) -> Drawer:
-    """The stretches that are first hits."""
 
     def draw(axes: Any, curves: list[Curve], label: str) -> None:
         look = PENS[pen].line() | {"linewidth": 3.2, "linestyle": "solid"}

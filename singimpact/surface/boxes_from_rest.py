@@ -266,7 +266,6 @@ def at_time(of: Tangencies, tau: Any, number: Any, time: Any, bits: int) -> tupl
 
 
 def _combined(one: Tube, other: Tube, factors: Pair) -> Tube:
-    """A sum of two columns with factors."""
     errors = [
         (e * upper(factor), k) for tube, factor in zip((one, other), factors, strict=True) for e, k in tube.errors
     ]

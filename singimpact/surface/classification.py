@@ -194,7 +194,6 @@ def _of_the_surface(surface: ImpactSurface) -> list[SingularPoint]:
 
 
 def _folds(maps: str, curves: list[Curve]) -> Iterator[FoldLine]:
-    """Each curve cut at its cusps."""
     for curve in curves:
         cuts = sorted(mark.index for mark in curve.marks if mark.name == "cusp")
         edges = {mark.index: "cut" for mark in curve.marks if mark.name == "cut"}

@@ -279,7 +279,6 @@ class ImpactSurface:
 
     @property
     def _cell(self) -> float:
-        """The largest cell of a sketch."""
         return 1 / (CELLS_A_RADIAN * fastest_rate(self.model))
 
     @cached_property

@@ -197,7 +197,6 @@ def _doubts(
     swans: tuple[Transition, ...],
     listed: Transitions,
 ) -> tuple[str, ...]:
-    """Why one of the kinds may be missing."""
     doubts: tuple[str, ...] = ()
     if {"swallowtail", "tangency"} & wanted:
         doubts += doubts_left(family, ends, times, [*(() if "swan" in wanted else swans), *listed])

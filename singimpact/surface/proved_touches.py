@@ -257,7 +257,6 @@ def _sides(times: tuple[float, float]) -> Iterator[tuple[int, tuple[Fraction, Fr
 
 
 def _ends_in_balls(ball: Any) -> tuple[Fraction, Fraction]:
-    """The ends of a ball, exact."""
     low, high = (as_rational(type(ball)(end)) for end in (ball.lower(), ball.upper()))
     return low, high
 

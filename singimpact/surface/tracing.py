@@ -172,7 +172,6 @@ def _walked(start: Array, along: Array, side: int, gradient: Gradient, window: W
 
 
 def _along(slope: Array) -> Array:
-    """The unit tangent, y > 0 at its left."""
     return np.asarray(np.array([slope[1], -slope[0]]) / np.hypot(*slope))
 
 

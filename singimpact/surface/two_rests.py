@@ -293,7 +293,6 @@ def _changes(value: Array) -> Array:
 
 
 def _crossings(d: Array, F: Array, c: Array) -> tuple[Array, Array]:
-    """Where F = 0 on one row, and c there."""
     at = np.flatnonzero(F[:-1] * F[1:] < 0)
     share = F[at] / (F[at] - F[at + 1])
     return d[at] + share * GRID.step, c[at] + share * (c[at + 1] - c[at])

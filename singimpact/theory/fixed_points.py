@@ -175,7 +175,6 @@ def _P_and_Q(j: int) -> tuple[flint.fmpz_poly, flint.fmpz_poly]:
 
 
 def _fixed_polynomial(j: int, rate: Fraction) -> flint.fmpq_poly:
-    """lambda^(j+1) P_j - r Q_j."""
     P, Q = map(flint.fmpq_poly, _P_and_Q(j))
     return flint.fmpq_poly([0] * (j + 1) + [1]) * P - Q * flint.fmpq(rate.numerator, rate.denominator)
 

@@ -178,7 +178,6 @@ def _off_wall(osc: si.ImpactOscillator) -> Callable[..., object]:
 
 
 def _between(osc: si.ImpactOscillator) -> ArrayCall:
-    """First hits of either of two walls."""
     return osc.replace(upper="1.3").first_hit
 
 
@@ -186,7 +185,6 @@ def _between(osc: si.ImpactOscillator) -> ArrayCall:
 
 
 def _split(size: int, call: ArrayCall) -> ArrayCall:
-    """Calls of so many states, of one in floats."""
 
     def run(tau: Array, v: Array) -> None:
         times, speeds = (tau.tolist(), v.tolist()) if size == 1 else (tau.reshape(-1, size), v.reshape(-1, size))
@@ -230,7 +228,6 @@ def calls(effort: Effort) -> list[Method]:
 
 
 def _plain(name: str, setting: str, aim: float | None, problems: int, call: Callable[[], object]) -> Method:
-    """A call of the same numbers each time."""
     return Method(f"singimpact, {name}", setting, call, problems=problems, aim=Aim(aim))
 
 

@@ -208,7 +208,6 @@ def _numba(setting: str, places: list[Problem]) -> list[Method]:
 
 
 def _scipy(setting: str, places: list[Problem]) -> list[Method]:
-    """A loop over events of scipy."""
     fly = followed_impacts.scipy_stepper(places[0].family, ACCURACY[SCIPY])
     calls = [partial(followed_impacts.chain, fly, each, SETTLING) for each in places]
     return [timed(SCIPY, setting, len(places), lambda: [call() for call in calls])]

@@ -235,7 +235,6 @@ def row(flown: Flown, tally: Tally) -> None:
 
 
 def _pixel(follower: Follower, state: tuple[float, float], answer: LongRun, first: bool, tally: Tally) -> None:
-    """Judge one pixel, or leave it with a cause."""
     call = f"basins from tau {state[0]!r}, v {state[1]!r}: {answer.name}, first chatter completes: {first}"
     if answer.kind == "unresolved":
         tally.leave("unresolved")

@@ -241,7 +241,6 @@ def _off(flown: Flown, at: int, time: float | None, velocity: float) -> float:
 
 
 def _told(flown: Flown, at: int, true: Any) -> str:
-    """A state with both flight times."""
     status = Status(int(flown.step.status[at])).name
     return f"{flown.call(at)}: {status}, flight time {float(flown.step.flight_time[at])!r}, truth {true}"
 

@@ -218,7 +218,6 @@ def tangency_row(flown: Flown, tally: Tally) -> None:
 
 
 def _kinds(flown: Flown, tau: Array, kinds: list[str], interval: float, tally: Tally) -> None:
-    """Signs of a_c on both sides of each point."""
     gaps, period = np.abs(tau[:, None] - tau[None, :]), flown.scales.period
     if period is not None:
         gaps = np.minimum(gaps, period - gaps)

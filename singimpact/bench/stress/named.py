@@ -248,7 +248,6 @@ def _on_zero_set(launch: Launch, vertex: list[float]) -> Trial:
 
 
 def _on_outline(launch: Launch, vertex: list[float], landing: list[float]) -> Trial:
-    """v over the phase of the vertex."""
 
     def solved(omega: Any, c: Any, phase: Any) -> list[Any]:
         def place(t: Any) -> tuple[Any, Any]:

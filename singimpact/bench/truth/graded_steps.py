@@ -104,7 +104,6 @@ def first_hit(motion: Motion, tau: float, v: float, horizon: float, first: float
 
 
 def _agree(one: tuple[int, float, float, float], other: tuple[int, float, float, float]) -> bool:
-    """Whether two flights end alike."""
     if one[0] != other[0] or one[0] == UNDECIDED:
         return False
     if one[0] == MISS:
@@ -129,7 +128,6 @@ def compiled_kernel() -> dict[str, Any]:
 
 
 def _signature() -> Any:
-    """The type of `flown`."""
     import numba
 
     number: Any = numba.float64

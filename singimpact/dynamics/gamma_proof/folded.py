@@ -87,7 +87,6 @@ class Models:
         return self.model(rows)
 
     def _narrow(self, row: list[Any]) -> list[Any]:
-        """Coefficients up to the last power of d."""
         m = self.order
         if len(row) <= m + 1:
             return [*row, *[arb(0)] * (m + 1 - len(row))]

@@ -15,19 +15,9 @@ from singimpact.algebra.expressions import Expression, evaluate, names_in, numbe
 from singimpact.algebra.numbers import as_float, as_fraction, compare, constant, rational_ends, rational_number
 from singimpact.algebra.precision import balls_at
 from singimpact.contact.zero_ahead import ContactZero, next_zero
+from singimpact.dynamics.gamma_proof import gravity
 from singimpact.dynamics.gamma_proof.after import PIECES, Lost, Settled, lost_contact, settled
 from singimpact.dynamics.gamma_proof.folded import between
-from singimpact.dynamics.gamma_proof.gravity import (
-    Flights,
-    Relation,
-    clock_of,
-    gravity,
-    numbers_of,
-    place_of,
-    restitution_at,
-    speed_factor,
-    time_of,
-)
 from singimpact.dynamics.gamma_proof.lemmas import BoxProof, ProofSettings, Undecided, prove_box, rational
 from singimpact.dynamics.gamma_proof.nonlinear import NonlinearRelation, nonlinear_relation
 from singimpact.inputs import InputError, need, refuse, require
@@ -129,19 +119,18 @@ class CertifiedGamma:
         """
         box, phase = self._one(), constant("tau", tau)
         with balls_at(BITS):
-            square = clock_of(self.oscillator, self.zero, BITS).square
+            square = gravity.clock_of(self.oscillator, self.zero, BITS).square
             T = self.zero.moved(BITS) - evaluate(phase, {}, Balls(BITS))
             flights = flights_before(self.oscillator, self.zero, self.reach)
-            S = place_of(square, T) if T > 0 and time_of(square, flights.s0) >= T else None
+            S = gravity.place_of(square, T) if T > 0 and gravity.time_of(square, flights.s0) >= T else None
             if S is None or not S > 0:
                 first = as_float(constant("tau", str(self.tau))) - float(self.duration.value)
                 raise refuse("tau", tau, f"a launch time from {first:.12g} to {self.tau}")
             return from_ball(self._velocity(box, flights, S), DIGITS)
 
-    def _velocity(self, box: BoxProof, flights: Flights, S: Any) -> Any:
-        """Gamma at S as a ball."""
+    def _velocity(self, box: BoxProof, flights: gravity.Flights, S: Any) -> Any:
         S = S.min(flights.s0)
-        return _gauged(box, flights, S) * speed_factor(clock_of(self.oscillator, self.zero, BITS), S)
+        return _gauged(box, flights, S) * gravity.speed_factor(gravity.clock_of(self.oscillator, self.zero, BITS), S)
 
     def at_reach(self) -> Certified:
         """v on gamma at S = reach, for one r."""
@@ -219,11 +208,11 @@ def certified_gamma(
     raise InputError(f"gamma is not certified before tau_* = {zero.tau:.12g}: {tried[-1]}")
 
 
-def flights_before(osc: Oscillator, zero: ContactZero, reach: Fraction, bits: int = BITS) -> Flights:
+def flights_before(osc: Oscillator, zero: ContactZero, reach: Fraction, bits: int = BITS) -> gravity.Flights:
     """The relation of two flights: of a linear model as a ball under gravity, of others by their series."""
     if linear_form(osc) is None:
         return nonlinear_relation(osc, zero, reach, bits)
-    return Relation(gravity(osc, zero, reach, bits))
+    return gravity.Relation(gravity.gravity(osc, zero, reach, bits))
 
 
 class _Ends:
@@ -287,7 +276,7 @@ def _reaches(wanted: Fraction | None, osc: Oscillator, zero: ContactZero) -> Ite
         return (wanted / 2**k for k in range(7))
     if linear_form(osc) is None:
         return iter(REACHES)
-    numbers = numbers_of(osc, zero, BITS)
+    numbers = gravity.numbers_of(osc, zero, BITS)
     fastest = max(
         [1e-6, abs(float(numbers.square.mid())) ** 0.5, *(abs(float(wave[0].mid())) / 4 for wave in numbers.waves)]
     )
@@ -295,7 +284,7 @@ def _reaches(wanted: Fraction | None, osc: Oscillator, zero: ContactZero) -> Ite
     return (unit * share for share in REACHES)
 
 
-def _covered(relation: Flights, ends: _Ends) -> tuple[BoxProof, ...]:
+def _covered(relation: gravity.Flights, ends: _Ends) -> tuple[BoxProof, ...]:
     """Proofs for boxes of lambda that touch and contain all r asked for."""
     if ends.tree is not None:
         r = evaluate(ends.tree, {}, Balls(BITS))
@@ -312,13 +301,13 @@ def _covered(relation: Flights, ends: _Ends) -> tuple[BoxProof, ...]:
             except Undecided as reason:
                 width = width / 2
                 if width < NARROWEST:
-                    r = float(restitution_at(relation.j, rational(x)).mid())
+                    r = float(gravity.restitution_at(relation.j, rational(x)).mid())
                     raise Undecided(f"r = {r:.4g}: {reason}") from None
         x, width = y, width * GROWTH
     return tuple(proofs)
 
 
-def _tried(relation: Flights, box: tuple[Fraction, Fraction], r: Any, patient: bool = True) -> BoxProof:
+def _tried(relation: gravity.Flights, box: tuple[Fraction, Fraction], r: Any, patient: bool = True) -> BoxProof:
     """A proof with the first settings that allow one."""
     reasons: list[Undecided] = []
     for settings in TRIED if patient else TRIED[:2]:
@@ -341,7 +330,7 @@ def ratio(j: int, r: Any, digits: int) -> tuple[Fraction, Fraction]:
     for _ in range(4 * digits):
         for share in (Fraction(1, 2), Fraction(3, 7)):  # next to lambda itself nothing is decided
             middle = low + share * (high - low)
-            value = restitution_at(j, rational(middle))
+            value = gravity.restitution_at(j, rational(middle))
             if value < r or value > r:
                 low, high = (middle, high) if value < r else (low, middle)
                 break
@@ -374,7 +363,7 @@ def _found(
         outcome["settled"] = _settled(osc, zero, s0, boxes)
         if outcome["settled"] is None:
             notes["after"] = f"that chatter completes after tau_* is not decided for r = {float(boxes[-1].r.mid()):.4g}"
-    duration = time_of(clock_of(osc, zero, BITS).square, flights.s0)
+    duration = gravity.time_of(gravity.clock_of(osc, zero, BITS).square, flights.s0)
     return CertifiedGamma(
         osc,
         zero,
@@ -391,10 +380,10 @@ def _found(
 
 def _lost(osc: Oscillator, zero: ContactZero, s0: Fraction) -> Lost | None:
     """The time after tau_* in which at most one impact comes: nearly up to the next zero of a_c."""
-    numbers = numbers_of(osc, zero, BITS)
+    numbers = gravity.numbers_of(osc, zero, BITS)
     for near in (s0, s0 / 4, s0 / 16):
-        o = gravity(osc, zero, near, BITS)
-        start = zero.moved(BITS) + time_of(numbers.square, o.s0()) / 2
+        o = gravity.gravity(osc, zero, near, BITS)
+        start = zero.moved(BITS) + gravity.time_of(numbers.square, o.s0()) / 2
         phase = number(Fraction(float(start.mid())))
         if sign_of_acceleration(osc, phase) <= 0:
             continue
@@ -411,14 +400,14 @@ def _lost(osc: Oscillator, zero: ContactZero, s0: Fraction) -> Lost | None:
 def _settled(osc: Oscillator, zero: ContactZero, s0: Fraction, boxes: tuple[BoxProof, ...]) -> Settled | None:
     """The launch speeds for which chatter completes after a swan, for the largest launch place at which these exceed
     gamma."""
-    square = abs(numbers_of(osc, zero, BITS).square).upper()
+    square = abs(gravity.numbers_of(osc, zero, BITS).square).upper()
     widest = Fraction(f"{float(1 / square.sqrt()):.3g}") if square > 1e-9 else 16 * s0
-    relation, r = Relation(gravity(osc, zero, s0, BITS)), arb(boxes[-1].r.upper())
+    relation, r = gravity.Relation(gravity.gravity(osc, zero, s0, BITS)), arb(boxes[-1].r.upper())
     for k in range(LAUNCHES):
         launch, best = s0 / 2**k, None
         for share in AFTER:
             try:
-                o = gravity(osc, zero, max(widest * share, launch), BITS, COARSE)
+                o = gravity.gravity(osc, zero, max(widest * share, launch), BITS, COARSE)
             except InputError:
                 continue
             bound = settled(o, launch, r, widest * share)
@@ -429,7 +418,7 @@ def _settled(osc: Oscillator, zero: ContactZero, s0: Fraction, boxes: tuple[BoxP
     return None
 
 
-def _gauged(box: BoxProof, relation: Flights, S: Any) -> Any:
+def _gauged(box: BoxProof, relation: gravity.Flights, S: Any) -> Any:
     """gamma at S as a ball of y'."""
     N, ell = len(box.series), arb(0)
     for part in reversed(box.series):

@@ -1,4 +1,4 @@
-"""The paper's figures 1 to 17, and B1 to B10 beyond it, from computed data of real oscillators.
+"""The paper's figures 1 to 17, and B1 to B11 beyond it, from computed data of real oscillators.
 
 Not here: what they show (`surface`, `dynamics`), what is claimed of it (`paper.claims`), pictures of a user's model
 (`scenes`).
@@ -19,7 +19,7 @@ FILES: dict[str, tuple[int | str, ...]] = {
     "outlines": (1, 2, 9, 10),
     "contact_figures": (3, 4, 5, 6, 7, 8),
     "swan_figures": tuple(range(11, 18)),
-    "beyond_figures": tuple(f"B{n}" for n in range(1, 11)),
+    "beyond_figures": tuple(f"B{n}" for n in range(1, 12)),
 }
 FIGURES = tuple(range(1, 18))  # the numbers of the paper's figures
 BEYOND = FILES["beyond_figures"]  # the names of figures of what the paper does not have
@@ -46,7 +46,7 @@ def picture(number: Any) -> Picture:
 
 @checked_keywords
 def figure(number: Any, *, serif: bool = False, dark: bool = False) -> Any:
-    """One of the paper's figures as a matplotlib figure, at the size of a printed page; "B1" to "B10" are beyond it.
+    """One of the paper's figures as a matplotlib figure, at the size of a printed page; "B1" to "B11" are beyond it.
 
     Parameters
     ----------

@@ -1,8 +1,9 @@
-"""Figures B1 to B10, of what the paper does not have.
+"""Figures B1 to B11, of what the paper does not have.
 
 A linear oscillator as a ball, the first correction at a swan, exponents of the threshold; heights of the loops of
 W^s(X), the foot X as a function of r, the orbit that is born at a swan; the visible outline where a swan's arc meets
-other branches of P; gamma of impacts that lose a power of a low speed; all simple orbits of an oscillator.
+other branches of P; gamma of impacts that lose a power of a low speed; all simple orbits of an oscillator; the
+curves that end at a contact of order three.
 """
 
 from collections.abc import Callable
@@ -15,8 +16,10 @@ import numpy as np
 import sympy
 
 from singimpact.algebra.numbers import Array, as_float
+from singimpact.algebra.solving import halved
 from singimpact.branches.certified_diagram import certified_diagram
 from singimpact.branches.events import KINDS
+from singimpact.contact.points import tangency_points
 from singimpact.dynamics.orbit import orbit
 from singimpact.dynamics.threshold import threshold
 from singimpact.dynamics.unfolded_swan import swan_configuration
@@ -391,6 +394,52 @@ def figure_B10() -> Picture:
         Panel(((-0.2, 0.12), (-0.015, 0.48)), "$c$", "$v$", "(b) the orbits near grazing", lines),
     ]
     return picture_of("B10", str(model), panels, {"open": float(len(diagram.open_parts))})
+
+
+# B11: the plane of p and q at a contact of order three, a_c = t^3 + p t + q.
+
+SWAN = 2 / 3**1.5  # |kappa| of the swans
+GRAZES = {  # impacts that an orbit beyond the curve has at most -> its look
+    0: ("P", "graze of the hop"),
+    1: ("loop", "graze after one impact"),
+    2: ("preimage", "graze after two impacts"),
+    10**9: ("gamma", r"border orbit, $\kappa_*(r)$"),
+}
+
+
+def impacts_before_leaving(r: float, kappa: float) -> float:
+    """The impacts before t_3 of the orbit that is released at t_1, p = -1; infinite where its chatter completes.
+
+    Examples
+    --------
+    >>> [impacts_before_leaving(0.5, kappa) for kappa in (-0.3, -0.2, -0.05)]
+    [inf, 1, 0]
+    """
+    model = Oscillator("0", "t**3 - t + q", 0, repr(r), {"q": kappa})
+    run = orbit(model, tangency_points(model)[0].tau, 0, 2000)
+    return np.inf if "complete" in run.kind else int((run.kind == "impact").sum())
+
+
+def _end_of(r: float, most: int) -> float:
+    return halved(lambda kappa: impacts_before_leaving(r, kappa) > most, -SWAN, 0.0, 1e-5)[0]
+
+
+def figure_B11() -> Picture:
+    """The curves of q over p at r = 1/2, and what they are at p = -1 for every r."""
+    rates, p = np.linspace(0.02, 0.98, 17), np.linspace(-1.2, 0, 200)
+    half, curves = list[Line](), list[Line]()
+    for most, (pen, words) in GRAZES.items():
+        ends = [_end_of(r, most) for r in rates.tolist()]
+        half.append(Line(np.stack([p, ends[8] * (-p) ** 1.5], axis=1), pen, words, words=words))
+        curves.append(Line(np.stack([rates, np.array(ends)], axis=1), pen, words, words=words))
+    for sign in (-1, 1):
+        half.append(Line(np.stack([p, sign * SWAN * (-p) ** 1.5], axis=1), "before", "swan", words="swans"))
+    curves.append(Line(np.array([[0.0, -SWAN], [1.0, -SWAN]]), "before", "swan", words="swans"))
+    panels = [
+        Panel(((-1.2, 0.1), (-0.55, 0.55)), "$p$", "$q$", "(a) $r = 1/2$", half),
+        Panel(((0.0, 1.0), (-0.41, -0.08)), "$r$", "$q/|p|^{3/2}$", "(b) every $r$", curves),
+    ]
+    return picture_of("B11", "x'' = t^3 + pt + q, c = 0", panels)
 
 
 DAMPING, CLEARANCE = 0.4, 0.9

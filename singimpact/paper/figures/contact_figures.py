@@ -264,7 +264,6 @@ def figure_5() -> Picture:
 
 
 def _order(points: Array, tau: float) -> float:
-    """The order of contact with Pi_0 at tau."""
     return float(np.polyfit(np.log(tau - points[:, 0]), np.log(points[:, 1]), 1)[0])
 
 

@@ -66,7 +66,6 @@ def _settings(serif: bool, dark: bool) -> Iterator[None]:
 
 
 def _halo() -> list[Any]:
-    """The ground around letters."""
     from matplotlib import patheffects
 
     return [patheffects.withStroke(linewidth=2, foreground=WHITE)]

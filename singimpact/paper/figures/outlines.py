@@ -133,7 +133,6 @@ def _equally_high(panels: list[Panel]) -> list[Panel]:
 
 
 def _panels(letter: str, change: Change, rows: list[tuple[str, list[Curve]]]) -> list[Panel]:
-    """Panels in one box, sheared alike."""
     middle = _middle(change, rows)
     shear = _shear(change, rows, middle)
     point = np.array([[change.tau + change.t, 0.0]])  # where lips are born; the shear of that panel goes through it

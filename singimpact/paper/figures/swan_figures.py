@@ -472,7 +472,6 @@ def _accumulation(loops: list[tuple[Array, Array]], gamma: Array, height: float)
 
 
 def _preimages(frame: Window) -> list[Array]:
-    """G^{-n}(delta) inside the frame."""
     curves, points = [], delta()[delta()[:, 1] > 0]
     share = np.linspace(0, len(points) - 1, 600)
     points = np.stack([np.interp(share, np.arange(len(points)), column) for column in points.T], axis=1)

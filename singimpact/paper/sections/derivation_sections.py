@@ -15,6 +15,7 @@ from singimpact.inputs import need, unknown
 from singimpact.paper.claims.beyond import hertz
 from singimpact.paper.claims.beyond.every_order import j
 from singimpact.paper.claims.beyond.foot import FORMULA
+from singimpact.paper.claims.beyond.order_three import HOP, RESTED
 from singimpact.paper.claims.sections.section6_loops import inner, preimage, r
 from singimpact.paper.routes import first_order, unfolding as swan
 from singimpact.paper.sections import NOTATION
@@ -35,7 +36,7 @@ def beyond() -> dict[str, object]:
     """The formulas of the section, by their names in its template; those that its words write out are checked."""
     _check_hertz()
     _check_foot()
-    return {"r": r, **_first_order(), "inner": inner(), "preimage": preimage(), "flight": _flight()}
+    return {"r": r, **_first_order(), "inner": inner(), "preimage": preimage(), "flight": _flight(), **_border_orbit()}
 
 
 def _shown(expression: sympy.Expr) -> str:
@@ -50,6 +51,11 @@ def _first_order() -> dict[str, str]:
     same = sympy.cancel(10 * moved.time / (first_order.s**2 - 1)).subs(NAMES)
     need(sympy.cancel(same - shift) == 0, ArithmeticError("chi is not what the change of time says"))
     return {"alpha": _shown(alpha), "chi": _shown(shift), "foot_shift": _shown(first_order.shift())}
+
+
+def _border_orbit() -> dict[str, object]:
+    """The hop, and the first terms of kappa as factors of -1, -sqrt(r) and -r."""
+    return {"hop": HOP, "rested": [latex(-value) for value in RESTED]}
 
 
 def _check_hertz() -> None:

@@ -5,7 +5,7 @@ from typing import Any
 import sympy
 
 from singimpact.documents.document_steps import Step
-from singimpact.paper.claims.next_sigma import next_sigma
+from singimpact.paper.claims.sections.section4_trials import next_sigma
 from singimpact.paper.claims.sections.section4b import M, ell, on_ray
 from singimpact.paper.claims.sections.section6_exact import LANDING, OUTLINE, z
 from singimpact.paper.claims.sections.section6_loops import grazing, inner, next_length_slopes, preimage, resting

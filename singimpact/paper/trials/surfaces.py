@@ -142,7 +142,6 @@ def _touching(model: ImpactOscillator, tau: float) -> float | None:
 
 
 def _crossings(heights: Array) -> Array:
-    """Indices before which the sign changes."""
     return np.flatnonzero(np.sign(heights[1:]) != np.sign(heights[:-1]))
 
 

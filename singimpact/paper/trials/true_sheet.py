@@ -241,7 +241,6 @@ def remainders(j: int | str, order: int) -> tuple[RemainderCase, ...]:
 
 
 def _both(name: str, point: Place, series: Sheet, flow: true_orbits.Flow, steps: list[Any]) -> list[RemainderCase]:
-    """The remainders of v_c and of phi."""
     return [
         RemainderCase(
             name,

@@ -37,6 +37,8 @@ KINDS = {
     "b:foot-monotone": "proved in the model",
     "b:foot": "certified",
     "b:foot-limit": "supported",
+    "b:three-one": "argued",
+    "b:three-rest": "argued",
     "b:loops-map": "proved modulo",
     "b:loops": "proved modulo",
     "b:loops-law": "proved modulo",

@@ -166,7 +166,7 @@ def test_the_command(tmp_path):
 
 @pytest.mark.parametrize("wrong", [0, 18, "x", True, 2.5, "²", "1" * 5000])
 def test_no_such_figure(wrong):
-    with pytest.raises(InputError, match="a number from 1 to 17, or B1 to B10"):
+    with pytest.raises(InputError, match="a number from 1 to 17, or B1 to B11"):
         si.figure(wrong)
 
 
@@ -253,7 +253,7 @@ def test_the_command_takes_serif_and_dark(tmp_path):
     assert "#14181c" in written[2]
 
 
-SECONDS = ("B7", "B8", "B9", "B10")  # many true orbits
+SECONDS = ("B7", "B8", "B9", "B10", "B11")  # many true orbits
 
 
 @pytest.mark.parametrize(
@@ -290,8 +290,8 @@ def test_orbits_and_words_of_both_planes(number):
 
 def test_the_paper_has_none_of_them():
     assert not set(BEYOND) & set(FIGURES)
-    with pytest.raises(InputError, match="B1 to B10"):
-        picture("B11")
+    with pytest.raises(InputError, match="B1 to B11"):
+        picture("B12")
 
 
 @pytest.mark.slow
@@ -419,3 +419,14 @@ def test_b10_leaves_open_what_a_dot_hides():
     assert {line.pen for line in curves} == {
         f"({n}, {k}) orbits, {word}" for n, k in ((1, 1), (1, 2), (2, 2)) for word in ("stable", "unstable")
     }
+
+
+@pytest.mark.slow
+def test_b11_has_the_curves_of_a_contact_of_order_three():
+    """The graze of the hop has the same coefficient for every r; the border orbit has its certified value at r = 1/2."""
+    half, every = made("B11").panels
+    grazes, border = ({line.name: line.points for line in every.lines}[name] for name in
+                      ("graze of the hop", r"border orbit, $\kappa_*(r)$"))  # fmt: skip
+    assert np.allclose(grazes[:, 1], -2 * np.sqrt(2) / 27, atol=1e-5)
+    assert border[8] == pytest.approx((0.5, -0.247345775310), abs=1e-5)
+    assert len([line for line in half.lines if line.name == "swan"]) == 2

@@ -14,6 +14,7 @@ FILES = (
     "first_order",
     "holder",
     "foot",
+    "order_three",
     "loops",
     "onset",
     "events_harmonic",

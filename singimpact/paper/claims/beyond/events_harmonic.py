@@ -32,7 +32,6 @@ B = Sw * Ch - omega * Cw * Sh
 
 
 def _at_rests() -> dict[str, Any]:
-    """x and x' at m + h and m - h."""
     found = {}
     for sign in (1, -1):
         cosine, sine = Cm * Cw - sign * Sm * Sw, Sm * Cw + sign * Cm * Sw  # of omega (m + sign h)

@@ -26,7 +26,6 @@ SECOND = q * (3 + (2 + q) * j) * (3 + (1 + 2 * q) * j) / (3 * (1 - q) * (3 + 2 *
 
 
 def _binomial(base: sympy.Expr, power: sympy.Expr, order: int) -> Any:
-    """(1 + base)^power to an order."""
     return sum((sympy.ff(power, k) / sympy.factorial(k) * base**k for k in range(order + 1)), sympy.Integer(0))
 
 
@@ -141,7 +140,6 @@ def _second(stated: sympy.Expr) -> Check:
 
 
 def _cut(expression: sympy.Expr, small: sympy.Expr) -> Any:
-    """A polynomial to the third order."""
     full = sympy.Poly(expression, small)
     return sum((sympy.factor(value) * small**n for (n,), value in full.terms() if n <= 3), sympy.Integer(0))
 

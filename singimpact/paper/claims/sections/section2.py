@@ -36,7 +36,6 @@ def _divisible(power: int) -> Check:
 
 
 def _signed(number: sympy.Expr) -> bool:
-    """Whether the sign of a number is known."""
     return number.is_positive is True or number.is_negative is True
 
 

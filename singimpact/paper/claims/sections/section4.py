@@ -174,7 +174,6 @@ def _saddle(stated: int) -> Check:
 
 
 def _at_launch(stated: sympy.Expr) -> Check:
-    """y_c where the flight starts."""
     return every([("y_c is what is stated at t = 0", agree(route.y_c(4), {t: 0}, stated))])
 
 

@@ -8,8 +8,7 @@ import sympy
 from singimpact.algebra import certificates
 from singimpact.algebra.certificates import negative_on, positive_on
 from singimpact.paper.claims.claim import Check, Encoding, Statement
-from singimpact.paper.claims.next_sigma import next_sigma, next_sigma_remainder
-from singimpact.paper.claims.sections.section4_trials import TRIALS as TRIALS
+from singimpact.paper.claims.sections.section4_trials import TRIALS as TRIALS, next_sigma, next_sigma_remainder
 from singimpact.paper.claims.verifiers import every, identity, is_zero, sample
 from singimpact.paper.routes import fold
 from singimpact.paper.routes.fold import eta, k, m

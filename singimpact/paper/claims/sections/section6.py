@@ -13,16 +13,8 @@ from singimpact.contact.swans import swan_points_over_clearance
 from singimpact.impact_oscillator import linear
 from singimpact.oscillator.model import Oscillator
 from singimpact.paper.claims.claim import Check, Encoding, Trial, Trials, at_each
+from singimpact.paper.claims.sections import section6_exact
 from singimpact.paper.claims.sections.section4_orbits import STABLE
-from singimpact.paper.claims.sections.section6_exact import (
-    at,
-    crossing,
-    epsilon_check,
-    nonzero,
-    persisting,
-    regular_conic,
-    scaling_check,
-)
 from singimpact.paper.claims.verifiers import every, is_zero, root_of_line, same
 from singimpact.paper.routes import unfolding as model
 from singimpact.paper.routes.implicit import v_c_swan
@@ -103,7 +95,7 @@ def _lips(cusps: int) -> Check:
     line = sympy.cancel(root_of_line(second, t))
     points = [(root, line.subs(sigma, root)) for root in sympy.Poly(conic.subs(t, line), sigma).real_roots()]
     good = [model.cusp_conditions(point) for point in points]
-    return persisting(
+    return section6_exact.persisting(
         [
             (
                 "H is an ellipse (its quadratic form is definite), in lengths that shrink with the distance of the zeros",
@@ -115,7 +107,7 @@ def _lips(cusps: int) -> Check:
             ),
         ],
         [
-            ("H has no singular point, and its form is definite", regular_conic()),
+            ("H has no singular point, and its form is definite", section6_exact.regular_conic()),
             *((f"v_ttt v_(sigma t) at {p}", g[2] * g[3]) for p, g in zip(points, good, strict=True)),
         ],
     )
@@ -136,7 +128,7 @@ def _none(sign: int) -> Check:
     form = sympy.Poly(sympy.expand(sympy.cancel(-model.limit_launch() / (kappa * t))), model.e)
     slope, rest = form.nth(1), form.nth(0)
     positive = definite(rest, sigma, t) == 1 and slope.is_positive and form.degree() == 1
-    return persisting(
+    return section6_exact.persisting(
         [
             (
                 f"v = -kappa t ({form.as_expr()}), for e >= 0 positive off the origin: v < 0 for t > 0",
@@ -157,7 +149,7 @@ def _ends(stated: tuple[int, int]) -> Check:
     """Signs of a' at A and at B for kappa > 0."""
     slopes = [model.slope_of_acceleration(point[0]) / kappa for point in (model.A, model.B)]
     found = tuple(int(sympy.sign(slope)) for slope in slopes)
-    return persisting(
+    return section6_exact.persisting(
         [(f"a' at A and B is {slopes[0]} kappa and {slopes[1]} kappa", found == stated)],
         [(f"a'({name})", slope * kappa) for name, slope in zip("AB", slopes, strict=True)],
         witness=lambda: {"kappa": "1", "a'(A)": str(slopes[0]), "a'(B)": str(slopes[1])},
@@ -177,7 +169,7 @@ def _slopes_of_outline(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
             for curve in (model.horizon(), model.zero_set())
         ],
     )
-    return persisting(
+    return section6_exact.persisting(
         [
             (f"E = {model.E} lies on H and Z, and its flight time is positive", on_both == (True, 0, 0)),
             (
@@ -187,9 +179,9 @@ def _slopes_of_outline(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
             ("v = 0 at t = 0, where H goes through B: there the image is tangent to Pi_0", _at_rest_tangent()),
         ],
         [
-            ("H and Z cross at E: their Jacobian", crossing(model.E)),
+            ("H and Z cross at E: their Jacobian", section6_exact.crossing(model.E)),
             ("dv/dsigma at E'", slopes[1]),
-            ("dH/dsigma at B", at(sympy.diff(model.horizon(), sigma), model.B)),
+            ("dH/dsigma at B", section6_exact.at(sympy.diff(model.horizon(), sigma), model.B)),
         ],
     )
 
@@ -209,7 +201,7 @@ def _slopes_of_reset(stated: tuple[sympy.Expr, sympy.Expr, int]) -> Check:
     speed = model.reset(middle)[1].subs(kappa, 1)
     common = _common_points()
     ends = {model.A, model.E} <= set(common) and model.E[1] > 0
-    return persisting(
+    return section6_exact.persisting(
         [
             (
                 f"slopes {slopes[0]} at A and {slopes[1]} at E''",
@@ -224,8 +216,8 @@ def _slopes_of_reset(stated: tuple[sympy.Expr, sympy.Expr, int]) -> Check:
             ),
         ],
         [
-            ("H and Z cross at A: their Jacobian", crossing(model.A)),
-            ("H and Z cross at E: their Jacobian", crossing(model.E)),
+            ("H and Z cross at A: their Jacobian", section6_exact.crossing(model.A)),
+            ("H and Z cross at E: their Jacobian", section6_exact.crossing(model.E)),
             ("dv/dsigma at E''", slopes[1]),
         ],
     )
@@ -258,10 +250,13 @@ def _gamma(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
         sympy.Poly(model.zero_set().subs(t, 1 - sigma), sigma).real_roots()
     )  # whose flight from rest lands at B
     near_A, at_B = model.slope_of_acceleration(-1), model.value_at_point(landing, (first, 1 - first))
-    return persisting(
+    return section6_exact.persisting(
         [
             (f"from sigma = {first} the flight from rest lands at B, {low} < {first}", bool(low < first < high)),
-            (f"next to A a' = {near_A}: chatter completes; stated {high}", high == -1 and nonzero(near_A)),
+            (
+                f"next to A a' = {near_A}: chatter completes; stated {high}",
+                high == -1 and section6_exact.nonzero(near_A),
+            ),
             ("with kappa > 0 it is negative", negative_on(near_A, kappa, 0, sympy.oo)),
             ("along (1, -1) x' at the landing is stationary on Z, and v has the slope a", all(map(is_zero, left_over))),
             ("a > 0 for sigma < -1: transverse", positive_on(push, sigma, -sympy.oo, -1)),
@@ -321,7 +316,7 @@ CLAIMS = {
     "s6-d": Encoding(-1, _birth, (1,)),
     "s6-scaling": Encoding(
         (WEIGHTS, _universal(4)),
-        scaling_check,
+        section6_exact.scaling_check,
         ((WEIGHTS, _universal(3)), (Weights(1, 2, 3, 2), _universal(4)), (Weights(1, 1, 4, 3), _universal(4))),
     ),
     "s6-c-side": Encoding(1, _side, (0,), lambda: -1),
@@ -340,7 +335,7 @@ CLAIMS = {
         _slopes_of_reset,
         ((sympy.Integer(0), 24 * kappa, 1), (sympy.Integer(0), sympy.Integer(0), -1)),
     ),
-    "s6p-eps": Encoding(1, epsilon_check, (0, 2)),
+    "s6p-eps": Encoding(1, section6_exact.epsilon_check, (0, 2)),
     "s6p-gamma": Encoding(
         (-SQRT3, sympy.Integer(-1)),
         _gamma,
