@@ -194,12 +194,14 @@ class _Search:
 
     def _polished(self, zero: Place) -> Place:
         """The enclosure of a zero that is known to be there, until it shrinks no more."""
+        # at 0 the radius is squared in each round, without an end: numbers with such exponents are a burden
+        tiny = self.balls.rational(Fraction(1, 2 ** (4 * self.settings.bits)))
         for _ in range(self.settings.rounds):
             moved = self._krawczyk(zero)
             if not moved:
                 return zero
             smaller = tuple(new.intersection(old) for new, old in zip(moved, zero, strict=True))
-            stuck = all(new.rad() > 0.7 * old.rad() for new, old in zip(smaller, zero, strict=True))
+            stuck = all(new.rad() > 0.7 * old.rad() or new.rad() < tiny for new, old in zip(smaller, zero, strict=True))
             zero = smaller
             if stuck:
                 break

@@ -423,7 +423,7 @@ def test_b10_leaves_open_what_a_dot_hides():
 
 @pytest.mark.slow
 def test_b11_has_the_curves_of_a_contact_of_order_three():
-    """The graze of the hop has the same coefficient for every r; the border orbit has its certified value at r = 1/2."""
+    """The graze of the hop has one coefficient for every r; the border orbit has its certified value at r = 1/2."""
     half, every = made("B11").panels
     grazes, border = ({line.name: line.points for line in every.lines}[name] for name in
                       ("graze of the hop", r"border orbit, $\kappa_*(r)$"))  # fmt: skip

@@ -80,3 +80,57 @@ def test_flights_are_ordered_by_the_place_of_the_first_zero(r):
         assert count >= 2
         assert (earlier[:count] > later[:count]).all()
         assert (np.diff(earlier[:count]) > np.diff(later[:count])).all()
+
+
+OSCILLATORS = {
+    "linear": ("x", "cos(1.7*t) + b*sin(3.4*t)"),
+    "damped, a spring that hardens": ("x + 0.3*xdot + x**3", "cos(1.7*t) + b*sin(3.4*t)"),
+    "damped pendulum": ("sin(x) + 0.1*xdot", "cos(2*t) + b*sin(4*t)"),
+}
+
+
+def coefficient(zeros):
+    """q/|p|^(3/2) of the cubic with three zeros."""
+    zeros = np.sort(zeros) - np.mean(zeros)
+    p = zeros[0] * zeros[1] + zeros[0] * zeros[2] + zeros[1] * zeros[2]
+    return -zeros.prod() / abs(p) ** 1.5
+
+
+@pytest.mark.parametrize("name", OSCILLATORS)
+def test_the_curve_of_true_oscillators_tends_to_it(name):
+    """Next to their points of order three, whatever f: like the root of p where damping acts, and faster without."""
+    f, g = OSCILLATORS[name]
+    osc = si.ImpactOscillator(f, g, 0, "1/2", {"b": 0})
+    points = si.contact_points(osc, 3, ("clearance", "b"), (("-0.9", "0.9"), (-1, 1)))
+    assert points.complete
+    point = next(point for point in points if point.sign > 0)
+    off = []
+    for p in (-0.01, -0.001):
+        ends = [point.unfolded(share * abs(p) ** 1.5, p) for share in (-0.36, -0.15)]
+        between = sorted(float(Fraction(str(model.clearance))) for model in ends)
+        (border,) = si.border_orbits(ends[1], "clearance", between, points=12)
+        zeros = sorted((zero.tau for zero in si.tangency_points(border.oscillator)), key=lambda t: abs(t - point.tau))
+        off.append(coefficient(np.array(zeros[:3])) + 0.247345775310425)
+    assert abs(off[0]) < 2e-3
+    assert 2.5 < off[0] / off[1] < 12
+
+
+def test_the_hop_grazes_once_and_for_every_restitution_at_one_coefficient():
+    """(s + 2)^3 (s - 3)^2/20 is the flight from rest at the first zero that touches the wall: kappa = -2 sqrt(2)/27.
+
+    A flight of t^3 + pt + q is a polynomial of degree five without the power four. So two rests of which one is a zero
+    of a_c are such a product or its mirror image, which lies below the wall before the later rest; three rests, or two
+    that are zeros, have degree six.
+    """
+    touching = np.polynomial.Polynomial.fromroots([-2, -2, -2, 3, 3]) / 20
+    assert touching.coef[4] == 0
+    a = touching.deriv(2)
+    assert a.coef == pytest.approx([-1, -4.5, 0, 1])
+    kappa_ = a.coef[0] / 4.5**1.5
+    assert kappa_ == pytest.approx(-2 * 2**0.5 / 27)
+    for q, impacts in ((kappa_ - 1e-4, 1), (kappa_ + 1e-4, 0)):
+        model = cubic("1/2", q)
+        run = model.orbit(si.tangency_points(model)[0].tau, 0, impacts=20)
+        assert (run.kind == "impact").sum() == impacts
+    mirrored = np.polynomial.Polynomial.fromroots([-3, -3, 2, 2, 2])
+    assert mirrored(-1.0) < 0

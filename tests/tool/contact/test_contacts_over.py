@@ -49,7 +49,7 @@ def test_all_points_of_order_three_of_drawn_models(seed):
     true = sorted(place for place in expected(shifts) if abs(place[0]) < 10)
     assert found.complete
     assert len(found) == len(true) > 0
-    for point, (b, tau, c) in zip(found, true, strict=True):
+    for point, (b, tau, c) in zip(sorted(found, key=lambda point: point.numbers["b"]), true, strict=True):
         assert (point.numbers["b"], point.tau, point.numbers["clearance"]) == pytest.approx((b, tau, c), abs=1e-9)
         third = wave(1, shifts[0], 3)(tau) + b * wave(2, shifts[1], 3)(tau) / 2
         assert point.leading == pytest.approx(third, rel=1e-8)
@@ -63,7 +63,7 @@ def test_order_two_over_the_clearance_is_a_swan():
     points = si.contact_points(osc, 2, "clearance", (-3, 3))
     assert points.complete
     assert len(points) == len(swans) == 4
-    for point, swan in zip(points, sorted(swans, key=lambda swan: (swan.clearance, swan.tau)), strict=True):
+    for point, swan in zip(points, sorted(swans, key=lambda swan: (swan.tau, swan.clearance)), strict=True):
         assert (point.numbers["clearance"], point.tau) == pytest.approx((swan.clearance, swan.tau))
         assert (point.sign > 0) == (swan.kind == "positive")
 
@@ -74,11 +74,11 @@ def test_order_four_over_three_numbers():
     points = si.contact_points(family, 4, ("clearance", "b", "d"), ((-2, 2), (-1, 1), (-1, 1)))
     assert points.complete
     assert [(p.numbers["clearance"], p.numbers["b"], p.tau) for p in points] == [
-        pytest.approx((-0.75, 0.25, np.pi), abs=1e-12),
         pytest.approx((0.75, -0.25, 0), abs=1e-12),
+        pytest.approx((-0.75, 0.25, np.pi), abs=1e-12),
     ]
-    assert points[1].leading == pytest.approx(-3)
-    near = points[1].unfolded(1e-4, 0.0, -0.04)  # -(s^4 - s^2/25 + 10^-4)/8
+    assert points[0].leading == pytest.approx(-3)
+    near = points[0].unfolded(1e-4, 0.0, -0.04)  # -(s^4 - s^2/25 + 10^-4)/8
     roots = sorted(zero.tau for zero in si.tangency_points(near))
     squares = (0.04 + np.array([-1, 1]) * np.sqrt(0.0016 - 0.0004)) / 2
     assert roots[:2] == pytest.approx(np.sqrt(squares), rel=0.05)
@@ -114,3 +114,10 @@ def test_numbers_that_change_the_period_are_refused():
     osc = si.ImpactOscillator("x", "cos(w*t)", 0, "1/2", {"w": 2})
     with pytest.raises(InputError, match="do not change the period"):
         si.contact_points(osc, 2, "w")
+
+
+def test_numbers_that_are_zero_have_balls_of_an_ordinary_size():
+    """Newton's method squares the radius at 0 again and again."""
+    points = si.contact_points(si.ImpactOscillator("0", "t**3 + p*t + q", 0, "1/2", {"p": 0, "q": 0}), 3, ("p", "q"))
+    assert points[0].numbers == {"p": 0, "q": 0}
+    assert all(1e-400 < number.radius < 1e-25 or number.radius == 0 for number in points[0].certified.values())

@@ -75,8 +75,8 @@ def _without_rebound(stated: tuple[sympy.Expr, ...]) -> Check:
     slow = sympy.cancel(_launch(x**3 / 6, -S, m * S) / S**2)
     fast = m - m**2 / 2 - slow  # of the landing of that flight
     # on gamma the next flight ends a part 1 - m of S before t_3, and (1 - m)^2 tends to r times a quotient of speeds
-    part = 1 - e * sympy.sqrt((fast / slow).subs(m, 1))
-    launch = sympy.expand(sympy.cancel(_launch(height, -S, m * S))).subs(m, part)
+    share = 1 - e * sympy.sqrt((fast / slow).subs(m, 1))
+    launch = sympy.expand(sympy.cancel(_launch(height, -S, m * S))).subs(m, share)
     sides = sympy.cancel(height / (1 + x) ** 3), -(e**2) * sympy.diff(height, x) - launch
     landing, speed = (sympy.Poly(sympy.expand(side.subs(x, -S).subs(near, simultaneous=True)), e) for side in sides)
     values = {S1: sympy.sqrt(root_of_line(speed.coeff_monomial(e**2).subs(S1, sympy.sqrt(t)), t))}
@@ -87,7 +87,7 @@ def _without_rebound(stated: tuple[sympy.Expr, ...]) -> Check:
     coefficients = [sympy.expand(sympy.radsimp(coefficient)) for coefficient in series]
     return every(
         [
-            (f"on gamma a flight from S ends a part m = {part} + O(e^2) of the way to t_3", True),
+            (f"on gamma a flight from S ends a part m = {share} + O(e^2) of the way to t_3", True),
             (f"so the hop lands at S = {near[S].subs(values)} + O(e^3)", True),
             (f"and kappa has the coefficients {coefficients}", coefficients == list(map(sympy.expand, stated))),
         ],
