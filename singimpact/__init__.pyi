@@ -45,6 +45,7 @@ from singimpact.studies import (
     certified_gamma as certified_gamma,
     chatter_limit as chatter_limit,
     classify as classify,
+    constants as constants,
     grown_gamma as grown_gamma,
     orbit as orbit,
     periodic as periodic,

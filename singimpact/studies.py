@@ -6,17 +6,20 @@ Each function calls one function of a sub-package, and reads windows and interva
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import wraps
 from inspect import signature
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 from singimpact.algebra.numbers import as_float, as_fraction, constant
-from singimpact.impact_oscillator import ImpactOscillator
+from singimpact.impact_oscillator import ImpactOscillator, universal
 from singimpact.inputs import InputError, checked_keywords, refuse, require, require_known, takes_two_walls, whole
 from singimpact.oscillator.model import Oscillator, require_model
+from singimpact.result import Result
 
 if TYPE_CHECKING:
+    from singimpact.algebra.certified import Certified
     from singimpact.branches.family_orbits import FamilyOrbits
     from singimpact.contact.swans import SwanPoints
     from singimpact.dynamics.basins_of_attraction import Basins
@@ -86,6 +89,66 @@ def interval(between: Any) -> tuple[Fraction, Fraction]:
         raise error if isinstance(error, InputError) else refuse("between", between, "two numbers low < high") from None
     require(low < high, "between", between, "two numbers low < high")
     return low, high
+
+
+# Name -> the claim that has it, and what it is like as r -> 0 and as r -> 1; j is the contact order.
+UNIVERSAL = {
+    "lambda": ("b:order-ray", "(r/(j+1))^(1/(j+1))", "1 - 3(1-r)/(2j+3)"),
+    "mu": ("b:order-saddle", "(j+1)^2/lambda", "1 + (1-r)"),
+    "X": ("b:foot-monotone", "3", "2.9410294 (1-r)^(-3/7), supported by numbers"),
+    "kappa_*": ("b:three-one", "-56/57^(3/2) - 225 sqrt(19 r)/13718", "-2/3^(3/2) + 0.2844281 (1-r)^(6/7), supported"),
+}
+
+
+@dataclass(frozen=True)
+class Constant(Result):
+    """A number of the theory at one r, certified. source : its claim. at_zero, at_one : its laws as r -> 0, r -> 1."""
+
+    name: str
+    order: int
+    value: Certified
+    source: str
+    at_zero: str
+    at_one: str
+
+
+@checked_keywords
+def constants(r: object, digits: int = 30) -> tuple[Constant, ...]:
+    """The numbers of the theory that depend on the restitution alone, in balls.
+
+    lambda and mu, along and across gamma, at the contact orders 1 to 3; X, where the orbit released at A of an unfolded
+    negative swan comes to rest; kappa_*, q/|p|^(3/2) of the border orbit at a contact of order three.
+
+    Parameters
+    ----------
+    r : a rational number with 1/100 <= r <= 99/100. digits : decimal digits, 16 or more.
+
+    Returns
+    -------
+    tuple of Constant : each has `.name`, `.order`, the contact order, `.value`, a `Certified`, `.source`, its claim,
+        and `.at_zero` and `.at_one`, the laws that it follows as r -> 0 and as r -> 1.
+
+    Examples
+    --------
+    >>> [f"{constant.name} {constant.value}"[:16] for constant in constants("1/2", 16) if constant.order == 3]
+    ['lambda 0.7943381', 'mu 1.98559656969', 'kappa_* -0.24734']
+    """
+    from singimpact.branches.border import border_orbits
+    from singimpact.theory.fixed_points import multipliers
+
+    rate, precision = as_fraction(constant("r", r)), max(whole("digits", digits, 1, 1000), 16)
+    require(
+        rate is not None and Fraction(1, 10**6) <= rate <= Fraction(99, 100), "r", r, "a rational from 1e-6 to 0.99"
+    )
+    values = []
+    for order in (1, 2, 3):
+        along = multipliers(order, rate, precision)
+        values += [("lambda", order, along.lambda_), ("mu", order, along.mu)]
+    values.append(("X", 2, universal(-1, rate).chatter_limit(-1, 0, digits=precision).certified))
+    cubic = Oscillator("0", "t**3 - t + q", 0, rate, {"q": "-1/4"})
+    (border,) = border_orbits(cubic, "q", ("-0.3849", "-0.13"), digits=precision, points=9)
+    values.append(("kappa_*", 3, border.certified))
+    return tuple(Constant(name, order, value, *UNIVERSAL[name]) for name, order, value in values)
 
 
 @checked_keywords

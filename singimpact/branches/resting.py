@@ -253,8 +253,11 @@ class Releases:
         return self.osc.replace(**{self.over: value})
 
     def followed(self, model: Oscillator, phases: tuple[float, ...]) -> tuple[float, ...]:
-        """The phases at which a_c rises through zero, next to those of a model nearby; nan where one is not found."""
-        return tuple(_rising(model, phase) for phase in phases)
+        """The phases at which a_c rises through zero, next to those of a model nearby; nan where a period has none."""
+        near = tuple(_rising(model, phase) for phase in phases)
+        # next to a swan releases move like a root: a model nearby may not lead to them
+        lost = model.period is None and not np.isfinite(near).all()
+        return rising_zeros(model) if lost else near
 
     def flown(self, value: Any, index: int, near: tuple[float, ...] | None = None) -> Released:
         """The orbit of one of the releases in a period, given by its index in their order.
@@ -270,11 +273,7 @@ class Releases:
         (1, True)
         """
         model = self.model(value)
-        phases = () if near is None else self.followed(model, near)
-        # next to a swan releases move like a root: a model nearby does not lead to them
-        if near is None or (model.period is None and not np.isfinite(phases).all()):
-            phases = rising_zeros(model)
-        return self.orbit(model, phases, index)
+        return self.orbit(model, rising_zeros(model) if near is None else self.followed(model, near), index)
 
     def orbit(self, model: Oscillator, phases: tuple[float, ...], index: int) -> Released:
         """The orbit released at phases[index]."""

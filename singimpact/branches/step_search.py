@@ -287,7 +287,6 @@ class StepSearch:
         )
 
     def _value(self, crossing: Crossing, along: float, point: Point) -> float:
-        """One test function at a point of the step."""
         if crossing.ends[0].is_minimum:
             turn = self.turn(crossing, along, point)
             return np.nan if turn is None else turn[1]

@@ -334,6 +334,25 @@ def fixed_points_command(contact: str, restitution: str, digits: int, as_json: b
     give(enclosures, columns(["name", "value", "radius"], rows), as_json, output)
 
 
+@click.command()
+@click.option(
+    "--restitution", "--r", metavar="NUMBER", required=True, help="Restitution, a rational from 0.01 to 0.99."
+)
+@click.option("--digits", type=int, default=30, show_default=True, help="Significant digits, 16 or more.")
+@output_options
+def constants_command(restitution: str, digits: int, as_json: bool, output: str | None) -> None:
+    """The numbers of the theory that depend on the restitution alone: lambda, mu, X and kappa_*, in balls.
+
+    Each has its contact order, the claim that has it, and its laws as r tends to 0 and to 1.
+    """
+    from singimpact.studies import constants
+
+    numbers = constants(restitution, digits)
+    header = ["name", "order", "value", "source", "r -> 0", "r -> 1"]
+    rows = [[one.name, str(one.order), str(one.value), one.source, one.at_zero, one.at_one] for one in numbers]
+    give([one.as_dict() for one in numbers], columns(header, rows), as_json, output)
+
+
 PAPER = "D. R. J. Chillingworth, Dynamics of an impact oscillator near a degenerate graze"
 SOFTWARE = f"singimpact {__version__}: low-velocity impacts of an oscillator near a degenerate graze"
 ENTRY = f"""@software{{singimpact,

@@ -41,6 +41,7 @@ COMMANDS = {
     "claims": "the claims: list, show, graph, impact",
     "certify": "a proved result with a certificate that a second program checks",
     "fixed-points": "fixed points and multipliers, certified, to any digits",
+    "constants": "numbers of the theory at one restitution, certified, with their laws",
     "cite": "references to cite",
 }
 # Commands that share a file; NAME is in NAME_command.py otherwise.
@@ -48,7 +49,7 @@ FILES = {
     **dict.fromkeys(("map", "orbit", "section", "chatter", "threshold", "lyapunov"), "orbit_commands"),
     **dict.fromkeys(("sweep", "basins", "bifurcation", "regions", "ensemble"), "long_run_commands"),
     **dict.fromkeys(("branch", "events", "border", "certify"), "branch_commands"),
-    **dict.fromkeys(("verify", "claims", "errata", "derive", "fixed-points", "cite"), "claim_commands"),
+    **dict.fromkeys(("verify", "claims", "errata", "derive", "fixed-points", "constants", "cite"), "claim_commands"),
     **dict.fromkeys(("scene", "classify", "explore"), "picture_commands"),
     **dict.fromkeys(("bench", "stress", "selftest"), "measuring_commands"),
 }

@@ -23,13 +23,15 @@ from singimpact.algebra.expressions import (
     subtract,
     walk,
 )
-from singimpact.algebra.isolated_zeros import is_one_root, isolate, repeated_zeros
+from singimpact.algebra.isolated_zeros import is_one_root, isolate
 from singimpact.algebra.numbers import as_float, sign_of
 from singimpact.algebra.precision import kept_property
 from singimpact.algebra.rings import EXACT, SYMBOLIC, ExactAtAngles
+from singimpact.contact.contacts_over import contact_points
 from singimpact.contact.points import enclosed, is_polynomial, window
 from singimpact.inputs import InputError
 from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator.moving_number import CLEARANCE
 from singimpact.result import Result, Results
 
 PARTS = 8  # of a period: the zeros of g' that have a name are looked for at its eighths
@@ -116,16 +118,14 @@ class SwanPoints(Results, tuple[SwanPoint, ...]):
     @kept_property
     def complete(self) -> bool:
         """Whether a second search, in boxes of times and clearances, proves that there are these and no others."""
-        model = self.model
-        if model is None or self.between is None:
+        if self.model is None:
             return not self
-        push = subtract(model.forcing(), substitute(model.force(), {"x": Name(BOUND), "xdot": number(0)}))
-        times = window(model, derivative(model.forcing(), "t"))
-        zeros = repeated_zeros(push, ("t", BOUND), (times, self.between))
+        boxes = contact_points(self.model, 2, CLEARANCE, self.between)
         swans = [(swan.tau, swan.clearance) for swan in self]
-        inside = [(float(zero.at), float(zero.values[0])) for zero in zeros.found if _in_period(model, float(zero.at))]
-        near = [[max(abs(a - p), abs(b - q)) < SAME for p, q in swans] for a, b in inside]
-        return zeros.complete and len(inside) == len(swans) and all(map(any, near))
+        near = [
+            any(max(abs(box.tau - tau), abs(box.numbers[CLEARANCE] - c)) < SAME for tau, c in swans) for box in boxes
+        ]
+        return boxes.complete and len(boxes) == len(swans) and all(near)
 
 
 def swan_points_over_clearance(model: Oscillator, between: tuple[Fraction, Fraction] | None = None) -> SwanPoints:

@@ -11,19 +11,7 @@ import numpy as np
 
 from singimpact.algebra.numbers import Array, as_float, float_array
 from singimpact.cases import in_threads
-from singimpact.dynamics.attractors import (
-    CHATTER,
-    CYCLE,
-    LEVEL,
-    PLACES,
-    RESPONSE,
-    RESTING,
-    SENSITIVE,
-    STILL,
-    Attractor,
-    neutral,
-    within,
-)
+from singimpact.dynamics import attractors as kinds
 from singimpact.dynamics.behaviours import LongRun, behaviour
 from singimpact.dynamics.long_run import futures, lift_offs_of_walls, settled
 from singimpact.dynamics.phases import phases_of
@@ -337,16 +325,16 @@ def for_ever(study: Study, states: tuple[Array, Array], table: Array) -> tuple[A
     for index in range(len(study.lift_offs)):
         table[first & (table[:, 1] == index)] = settled(follows, index, study.phases.unit)
     if _several(study, table[settles(table)]):
-        table[[row in doubtful for row in map(tuple, table.tolist())]] = SENSITIVE, 0.0, 0.0
+        table[[row in doubtful for row in map(tuple, table.tolist())]] = kinds.SENSITIVE, 0.0, 0.0
     if not study.phases.repeats:
         table = confirmed(study, table)
     late = _open_to_rounding(study, table, flown)
-    table[late[parted(study, tau[late], v[late], flown[late])]] = SENSITIVE, 0.0, 0.0
+    table[late[parted(study, tau[late], v[late], flown[late])]] = kinds.SENSITIVE, 0.0, 0.0
     if not study.phases.clocked:
-        cycles = np.flatnonzero(table[:, 0] >= PLACES)
+        cycles = np.flatnonzero(table[:, 0] >= kinds.PLACES)
         several, which = np.unique(table[cycles][:, [0, 2]], axis=0, return_inverse=True)
-        level = neutral(study.model, several[:, 0].astype(np.int64) // PLACES, several[:, 1])[which.ravel()]
-        table[cycles[level]] = LEVEL, 0.0, 0.0
+        level = kinds.neutral(study.model, several[:, 0].astype(np.int64) // kinds.PLACES, several[:, 1])[which.ravel()]
+        table[cycles[level]] = kinds.LEVEL, 0.0, 0.0
     return table, first
 
 
@@ -425,7 +413,7 @@ def _after_lift_off(study: Study, doubtful: set[tuple[float, ...]], tau: Array, 
     late = np.flatnonzero(settles(rows) & (flown > SETTLING.sensitive))
     late = late[parted(study, tau[late], v[late], flown[late])]
     doubtful.update(map(tuple, rows[late].tolist()))
-    rows[late[rows[late, 0] == CHATTER]] = SENSITIVE, 0.0, 0.0
+    rows[late[rows[late, 0] == kinds.CHATTER]] = kinds.SENSITIVE, 0.0, 0.0
     return rows
 
 
@@ -437,15 +425,15 @@ def named(study: Study, rows: Array) -> tuple[tuple[LongRun, ...], Array]:
         code, tau, v = rows[first].tolist()
         classes.append(behaviour(study, rows[first]))
         same = left & (rows[:, 0] == code)
-        if code >= PLACES:
-            orbit = Attractor(int(code), classes[-1].tau, classes[-1].v, SETTINGS.same)
-            same &= within(orbit, study.model, rows[:, 1], rows[:, 2], study.fast, SETTINGS.same)
+        if code >= kinds.PLACES:
+            orbit = kinds.Attractor(int(code), classes[-1].tau, classes[-1].v, SETTINGS.same)
+            same &= kinds.within(orbit, study.model, rows[:, 1], rows[:, 2], study.fast, SETTINGS.same)
             same[first] = True
-        elif code in (CYCLE, STILL):
+        elif code in (kinds.CYCLE, kinds.STILL):
             same &= np.abs(rows[:, 1] - tau) <= SETTINGS.same * tau
             same &= np.abs(rows[:, 2] - v) <= SETTINGS.same * max(v, abs(as_float(study.model.clearance)))
-        elif code in (CHATTER, RESPONSE, RESTING):
-            same &= (rows[:, 1] == tau) & ((code == CHATTER) | (rows[:, 2] == v))
+        elif code in (kinds.CHATTER, kinds.RESPONSE, kinds.RESTING):
+            same &= (rows[:, 1] == tau) & ((code == kinds.CHATTER) | (rows[:, 2] == v))
         codes[same], left = len(classes) - 1, left & ~same
     return tuple(classes), codes
 

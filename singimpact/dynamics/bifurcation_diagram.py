@@ -12,23 +12,7 @@ from singimpact.algebra.expressions import names_in
 from singimpact.algebra.numbers import Array, as_float
 from singimpact.case_pools import ThreadPool
 from singimpact.cases import sweep
-from singimpact.dynamics.attractors import (
-    AWAY,
-    CHAOS,
-    CHATTER,
-    CYCLE,
-    GONE,
-    LEVEL,
-    OTHER,
-    PLACES,
-    RESPONSE,
-    RESTING,
-    STILL,
-    STUCK,
-    apart,
-    nearby_orbits,
-    neutral,
-)
+from singimpact.dynamics import attractors as kinds
 from singimpact.dynamics.behaviours import LongRun, behaviour, matched
 from singimpact.dynamics.free_motion import free_fates
 from singimpact.dynamics.long_run import chaotic
@@ -249,7 +233,7 @@ def _followed(first: Orbit, flown: tuple[int, int, int]) -> tuple[Orbit, Row]:
         tau, v = np.array([_phase(last, float(last.tau[-1]))]), last.speeds[-1:]
         flies = last.kind[-1] == "impact"
         grows = flies and bool(chaotic(last.oscillator, tau, v, max(float(last.v.max()), 1e-300))[0])
-        row = (CHAOS if grows else OTHER, 0.0, 0.0)
+        row = (kinds.CHAOS if grows else kinds.OTHER, 0.0, 0.0)
     return last, row
 
 
@@ -272,27 +256,31 @@ def _ending(flown_orbit: Orbit) -> Row | None:
             height = flown_orbit.places[-1:] - as_float(flown_orbit.oscillator.clearance)
             height += flown_orbit.height if flown_orbit.tau.size == 1 else 0.0
             row = free_fates(flown_orbit.oscillator, height, flown_orbit.speeds[-1:])[0]
-            if np.isfinite(row[0]) and row[0] not in (AWAY, STUCK):
+            if np.isfinite(row[0]) and row[0] not in (kinds.AWAY, kinds.STUCK):
                 return tuple(row.tolist())
-        return (STUCK if last == "unresolved" else GONE if np.isinf(flown_orbit.end) else AWAY, 0.0, 0.0)
+        return (
+            kinds.STUCK if last == "unresolved" else kinds.GONE if np.isinf(flown_orbit.end) else kinds.AWAY,
+            0.0,
+            0.0,
+        )
     if last == "sticking" and not np.isfinite(flown_orbit.phases[-1][2]):
-        return (CHATTER, -1.0 - (_wall(flown_orbit) or 0), 0.0)
+        return (kinds.CHATTER, -1.0 - (_wall(flown_orbit) or 0), 0.0)
     shown = np.isin(flown_orbit.kind, ("impact", "graze", "complete"))
     tau, v = flown_orbit.tau[shown], flown_orbit.speeds[shown]
     phases, fast = phases_of(flown_orbit.oscillator), max(float(np.abs(v).max(initial=0.0)), 1e-300)
     if not phases.repeats:
         rests = np.count_nonzero(flown_orbit.kind == "release") > 1
-        return (RESTING, 0.0, 0.0) if rests else _response(flown_orbit, fast)
+        return (kinds.RESTING, 0.0, 0.0) if rests else _response(flown_orbit, fast)
     if not phases.clocked:
         n = _cycle(np.diff(tau), v[1:])
         return _orbit(flown_orbit, n, fast) if n else None
     if turn := _between_lift_offs(flown_orbit):
-        return (CHATTER, 0.0, float(phases.periods(np.array(turn))))
+        return (kinds.CHATTER, 0.0, float(phases.periods(np.array(turn))))
     for n in range(1, min(PERIOD, tau.size // 2) + 1):
         last_ones, before = slice(-n, None), slice(-2 * n, -n)
-        if apart((tau[last_ones], v[last_ones]), (tau[before], v[before]), phases, fast).max() < CLOSE:
+        if kinds.apart((tau[last_ones], v[last_ones]), (tau[before], v[before]), phases, fast).max() < CLOSE:
             if not (flown_orbit.kind[flown_orbit.tau >= tau[-2 * n]] == "impact").all():
-                return (CHATTER, 0.0, float(phases.periods(tau[-1] - tau[-1 - n])))
+                return (kinds.CHATTER, 0.0, float(phases.periods(tau[-1] - tau[-1 - n])))
             return _orbit(flown_orbit, n, fast)
     return None
 
@@ -312,7 +300,7 @@ def _between_lift_offs(flown_orbit: Orbit) -> float:
 def _response(flown_orbit: Orbit, fast: float) -> Row | None:
     """The row of an orbit under a forcing that never repeats, where a neighbour comes to it."""
     tau, v = float(flown_orbit.tau[-1]), float(flown_orbit.speeds[-1])
-    return (RESPONSE, tau, v) if v and meets(Study(flown_orbit.oscillator, (), fast, 1), tau, v) else None
+    return (kinds.RESPONSE, tau, v) if v and meets(Study(flown_orbit.oscillator, (), fast, 1), tau, v) else None
 
 
 def _cycle(spans: Array, v: Array) -> int:
@@ -323,7 +311,7 @@ def _cycle(spans: Array, v: Array) -> int:
     sizes = Times(max(float(spans.max(initial=0.0)), 1e-300)), max(float(np.abs(v).max(initial=0.0)), 1e-300)
     for n in range(1, min(PERIOD, v.size // 3) + 1):
         parts = [(spans[v.size - k * n :][:n], v[v.size - k * n :][:n]) for k in (1, 2, 3)]
-        last, before = (apart(parts[i], parts[i + 1], *sizes).max() for i in (0, 1))
+        last, before = (kinds.apart(parts[i], parts[i + 1], *sizes).max() for i in (0, 1))
         if last < CLOSE and (last < 1e-14 or last * last < CLOSE * max(before - last, 0.0)):
             return n
     return 0
@@ -334,14 +322,14 @@ def _orbit(flown_orbit: Orbit, n: int, fast: float) -> Row | None:
     end, v = flown_orbit.tau[flown_orbit.kind == "impact"], flown_orbit.speeds[flown_orbit.kind == "impact"]
     phases = phases_of(flown_orbit.oscillator)
     turns, tau = phases.periods(end[-1:] - end[-1 - n]).astype(np.int64), phases.of(end[-1:])
-    beside = nearby_orbits(flown_orbit.oscillator, tau, v[-1:], np.array([n]), turns, fast)
-    away = apart((beside.tau, beside.v), (tau, v[-1]), phases, fast)
+    beside = kinds.nearby_orbits(flown_orbit.oscillator, tau, v[-1:], np.array([n]), turns, fast)
+    away = kinds.apart((beside.tau, beside.v), (tau, v[-1]), phases, fast)
     if not np.where(beside.found, away < CLOSE, beside.returned)[0]:
         return None
     n, k = (int(beside.n[0]), int(beside.k[0])) if beside.found[0] else (n, int(turns[0]))
-    if not phases.clocked and neutral(flown_orbit.oscillator, np.array([n]), v[-1:])[0]:
-        return (LEVEL, 0.0, 0.0)
-    return (n * PLACES + k, float(tau[0]), float(v[-1]))
+    if not phases.clocked and kinds.neutral(flown_orbit.oscillator, np.array([n]), v[-1:])[0]:
+        return (kinds.LEVEL, 0.0, 0.0)
+    return (n * kinds.PLACES + k, float(tau[0]), float(v[-1]))
 
 
 def _carried(model: Oscillator, over: str, values: Array, start: Any, flown: tuple[int, int, int]) -> Array:
@@ -353,7 +341,7 @@ def _carried(model: Oscillator, over: str, values: Array, start: Any, flown: tup
     """
     rows: list[Array] = []
     last: Orbit | None = None
-    row: Row = (OTHER, 0.0, 0.0)
+    row: Row = (kinds.OTHER, 0.0, 0.0)
     for value in values.tolist():
         moved = model.replace(**{over: value})
         first = orbit(moved, start[0], start[1], flown[0]) if last is None else _continued(moved, last, row, flown[0])
@@ -364,8 +352,8 @@ def _carried(model: Oscillator, over: str, values: Array, start: Any, flown: tup
 
 def _continued(moved: Oscillator, last: Orbit, row: Row, impacts: int) -> Orbit:
     """The orbit of a model from the last state of another one; the phase within the period is kept."""
-    if row[0] in (CYCLE, STILL):  # from the least x of the cycle, or the rest
-        height = row[2] if row[0] == CYCLE else row[1]
+    if row[0] in (kinds.CYCLE, kinds.STILL):  # from the least x of the cycle, or the rest
+        height = row[2] if row[0] == kinds.CYCLE else row[1]
         x = _between(moved, as_float(last.oscillator.clearance) + height)
         return dropped_orbit(moved, (x, 0.0, 0.0), impacts)
     period, before = phases_of(moved).unit, phases_of(last.oscillator).unit
@@ -391,13 +379,13 @@ def _last_events(flown_orbit: Orbit, row: Row, flown: tuple[int, int, int]) -> A
 
     Shape (kept + 2, 3): the first number of the last row but one is 1 where it has; the last row is that of its class.
     """
-    repeats = row[0] not in (OTHER, CHAOS, STUCK)
+    repeats = row[0] not in (kinds.OTHER, kinds.CHAOS, kinds.STUCK)
     shown, count = np.isin(flown_orbit.kind, ("impact", "graze", "complete")), flown[1]
     rows = np.stack([flown_orbit.tau, flown_orbit.speeds, flown_orbit.kind == "complete"], axis=1)[shown]
     if flown_orbit.oscillator.period is None:
         rows[:, 0] = np.diff(rows[:, 0], prepend=flown_orbit.tau[0])
     last = rows[max(flown[0] - count, 0) :][-count:]
-    if row[0] in (CYCLE, STILL):  # the impacts before belong to the transient
+    if row[0] in (kinds.CYCLE, kinds.STILL):  # the impacts before belong to the transient
         last = rows = rows[:0]
     events = last if len(last) else rows[-1:]  # one that has come to rest for ever shows only that
     if flown_orbit.oscillator.period is not None:

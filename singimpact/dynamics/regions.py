@@ -215,7 +215,6 @@ class _Job:
         return in_parts(family, self.start, self._measured)[0]
 
     def _measured(self, *states: Any) -> tuple[Array]:
-        """`COLUMNS` of orbits of some members."""
         if self.of == "period":
             return (_Settling(Lives(*states), self.impacts).rows(),)
         if self.of == "lyapunov":
@@ -224,7 +223,6 @@ class _Job:
 
 
 def _only(values: Array) -> Array:
-    """Rows of places with a value and no class."""
     return np.column_stack([np.zeros((values.size, 4)), values])
 
 
@@ -251,7 +249,6 @@ def _strip(job: _Job, rows: int, case: tuple[Array, Array]) -> Array:
 
 
 def _long_run(row: list[float], job: _Job) -> LongRun:
-    """The class of the first four of `COLUMNS`."""
     kind, n, k, word = row
     none = np.zeros(0)
     letters = "" if not word else bin(int(word))[3:].replace("0", "l").replace("1", "u")

@@ -16,24 +16,8 @@ from singimpact.branches.events import KINDS, Event, kind_of
 from singimpact.branches.solutions import orbit_period
 from singimpact.dynamics.bifurcation_diagram import Bifurcation
 from singimpact.inputs import InputError, refuse, require
+from singimpact.scenes import style as looks
 from singimpact.scenes.label_places import legend_below, legend_entries, legend_mark, place_labels
-from singimpact.scenes.style import (
-    BLACK,
-    BLUE,
-    DOTS,
-    EVENT_PENS,
-    GREEN,
-    GREY,
-    LETTERS,
-    LINES,
-    OPEN,
-    ORANGE,
-    PURPLE,
-    SKY,
-    VERMILLION,
-    orbit_color,
-    orbit_width,
-)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -75,13 +59,13 @@ def draw_branches(branches: Sequence[Branch], axes: Axes, height: str = "v") -> 
         line.lines(axes)
     if fresh:
         _limits(axes, drawn, shown)
-        axes.set(xlabel=LETTERS.get(names[0], names[0]), ylabel=HEIGHTS[shown])
+        axes.set(xlabel=looks.LETTERS.get(names[0], names[0]), ylabel=HEIGHTS[shown])
         if shown == "v" and any(branch.wall is not None for branch in branches):
             axes.set_ylabel(HEIGHTS["walls"])
         if shown != "phase":
-            axes.axhline(0, color=BLACK, linewidth=0.6, zorder=1, gid="no impact")
+            axes.axhline(0, color=looks.BLACK, linewidth=0.6, zorder=1, gid="no impact")
     marks = [mark for line in drawn for mark in line.marks()]
-    return _legend(axes, drawn, [name for name in LINES if name in kinds], _draw_marks(axes, marks))
+    return _legend(axes, drawn, [name for name in looks.LINES if name in kinds], _draw_marks(axes, marks))
 
 
 class _Drawn:
@@ -130,7 +114,7 @@ class _Drawn:
 
     def lines(self, axes: Axes) -> None:
         """One line for each impact and each stretch of one class."""
-        color = orbit_color(self.branch.n, self.branch.k)
+        color = looks.orbit_color(self.branch.n, self.branch.k)
         # the class of a step between points is that of its end that is not an event; of two events that of what follows
         ends = self.classes.tolist()
         steps = [next((name for name in ends[i:] if name), "virtual") for i in range(len(ends) - 1)]
@@ -138,8 +122,8 @@ class _Drawn:
         for i in range(1, len(steps) + 1):
             if i < len(steps) and steps[i] == steps[first]:
                 continue
-            style, width = LINES[steps[first]]
-            width *= orbit_width(self.branch.n, self.branch.k)
+            style, width = looks.LINES[steps[first]]
+            width *= looks.orbit_width(self.branch.n, self.branch.k)
             piece = slice(first, i + 1)
             for impact in range(self.heights.shape[1]):
                 heights = self.heights[piece, impact].copy()
@@ -195,7 +179,7 @@ def _limits(axes: Axes, drawn: list[_Drawn], shown: str) -> None:
 def _draw_marks(axes: Axes, marks: list[Any]) -> set[str]:
     """Markers with their names, if all of these have clear places and are few; otherwise the names for the legend."""
     for (number, height, kind), _ in marks:
-        axes.plot(number, height, kind_of(kind).marker, **OPEN, markersize=MARK, zorder=6, gid=kind)
+        axes.plot(number, height, kind_of(kind).marker, **looks.OPEN, markersize=MARK, zorder=6, gid=kind)
     names = [(number, height, name) for (number, height, _), name in marks if name]
     # more events, or any whose name would hide a curve, are named in the legend, not beside their points
     if len(names) > 8:
@@ -216,10 +200,10 @@ def _legend(axes: Axes, drawn: list[_Drawn], kinds: list[str], names: set[str]) 
     for line in drawn:
         n, k = line.branch.n, line.branch.k
         name = f"({line.branch.impacts}, {k}) orbits" if n else "without impact"
-        entries.setdefault(name, Line2D([], [], color=orbit_color(n, k), linewidth=2.4 * orbit_width(n, k)))
+        entries.setdefault(name, Line2D([], [], color=looks.orbit_color(n, k), linewidth=2.4 * looks.orbit_width(n, k)))
     for kind in kinds:
-        style, width = LINES[kind]
-        entries.setdefault(WORDS[kind], Line2D([], [], color=BLACK, linestyle=style, linewidth=width))
+        style, width = looks.LINES[kind]
+        entries.setdefault(WORDS[kind], Line2D([], [], color=looks.BLACK, linestyle=style, linewidth=width))
     entries |= {kind.label: legend_mark(kind.marker, MARK) for kind in KINDS if kind.label in names}
     return legend_below(axes, entries, min(4, len(entries)))
 
@@ -234,7 +218,7 @@ def draw_event_curves(curves: Sequence[EventCurve], axes: Axes) -> Axes:
 
     names = [f"({curve.impacts}, {curve.k}) orbits" for curve in curves]
     for curve, orbits in zip(curves, names, strict=True):
-        pen = EVENT_PENS[curve.kind]
+        pen = looks.EVENT_PENS[curve.kind]
         name = kind_of(curve.kind).label
         name = f"{name} of {orbits}" if len(set(names)) > 1 else name
         entries.setdefault(name, Line2D([], [], **pen.line()))
@@ -243,17 +227,17 @@ def draw_event_curves(curves: Sequence[EventCurve], axes: Axes) -> Axes:
             # a piece begins where the one before it ends
             joined = chosen | np.append(chosen[1:], False) | np.insert(chosen[:-1], 0, False) if not seen else chosen
             points = np.where(joined[:, None], curve.parameters, np.nan)
-            line = pen.line() if seen else {"color": pen.color, "linestyle": DOTS, "linewidth": 1.3}
+            line = pen.line() if seen else {"color": pen.color, "linestyle": looks.DOTS, "linewidth": 1.3}
             axes.plot(*points.T, **line, zorder=4 if seen else 3, gid=name)
     if not all(curve.visible.all() for curve in curves):
-        entries[WORDS["virtual"]] = Line2D([], [], color=BLACK, linestyle=DOTS, linewidth=1.3)
+        entries[WORDS["virtual"]] = Line2D([], [], color=looks.BLACK, linestyle=looks.DOTS, linewidth=1.3)
     if fresh:
         across, up = curves[0].over
-        axes.set(xlabel=LETTERS.get(across, across), ylabel=LETTERS.get(up, up))
+        axes.set(xlabel=looks.LETTERS.get(across, across), ylabel=looks.LETTERS.get(up, up))
         axes.margins(SPACE)
     marked = _apart([(*point.parameters, point.kind) for curve in curves for point in curve.special], axes)
     for x, y, _ in marked:
-        axes.plot(x, y, "D", **OPEN, markersize=5, zorder=6, gid="special point")
+        axes.plot(x, y, "D", **looks.OPEN, markersize=5, zorder=6, gid="special point")
     place_labels(axes, marked)
     return legend_below(axes, entries, min(4, len(entries)))
 
@@ -272,7 +256,7 @@ def _apart(points: list[tuple[float, float, str]], axes: Axes) -> list[tuple[flo
 # Bifurcation diagrams: velocities and phases of settled orbits, branches of periodic orbits over them.
 
 SIZE = (8.0, 6.4)  # inches
-ATTRACTORS = (BLUE, ORANGE, GREEN, PURPLE, SKY)  # colours of those met at most values
+ATTRACTORS = (looks.BLUE, looks.ORANGE, looks.GREEN, looks.PURPLE, looks.SKY)  # colours of those met at most values
 SPREAD = 60_000.0  # impacts per square inch of area of their dots: few get large dots, many small ones
 
 
@@ -330,15 +314,17 @@ def draw_bifurcation(diagram: Bifurcation, axes: Any, height: str = "v") -> Any:
         chosen = np.repeat(at, diagram.events.shape[1]) & ~resting
         axes.plot(values[chosen], places[chosen], color=color, label=name, **dots)
     if resting.any():
-        axes.plot(values[resting], places[resting], color=VERMILLION, label="end of complete chatter", **large)
+        axes.plot(values[resting], places[resting], color=looks.VERMILLION, label="end of complete chatter", **large)
     above = height == "v" and bool((v < 0).any())  # impacts at an upper wall
-    axes.set(xlabel=LETTERS.get(diagram.over, diagram.over), ylabel=HEIGHTS["walls" if above else height])
+    axes.set(xlabel=looks.LETTERS.get(diagram.over, diagram.over), ylabel=HEIGHTS["walls" if above else height])
     low, top = axes.get_ylim()
     # velocities 0 stand above the edge, so that markers of grazes are whole
     ends = (low if above else -0.03 * top, top) if height == "v" else (0, 1)
     axes.set(xlim=(diagram.values.min(), diagram.values.max()), ylim=ends)
     if not np.isfinite(v).any():
-        axes.text(0.5, 0.5, "no orbit of this window has an impact", transform=axes.transAxes, ha="center", color=GREY)
+        axes.text(
+            0.5, 0.5, "no orbit of this window has an impact", transform=axes.transAxes, ha="center", color=looks.GREY
+        )
     if len(axes.get_legend_handles_labels()[1]) > 1:
         axes.legend(loc="best", fontsize="small", markerscale=2)
     return axes
@@ -358,12 +344,12 @@ def _attractors(diagram: Bifurcation) -> list[tuple[Array, str, str]]:
         if not free and not chaotic:
             rest |= at
             continue
-        own = orbit_color(int(run.n), run.k) if run.kind == "orbit" else ""
-        color = BLACK if chaotic else free.pop(free.index(own) if own in free else 0)
+        own = looks.orbit_color(int(run.n), run.k) if run.kind == "orbit" else ""
+        color = looks.BLACK if chaotic else free.pop(free.index(own) if own in free else 0)
         ways = [name for name, way in (("up", first_way), ("down", ~first_way)) if at[way].any()]
         only = f", on the way {ways[0]}" if diagram.direction == "both" and len(ways) == 1 else ""
         rows.append((at, color, ("chaos" if chaotic else run.name) + only))
-    return [*rows, (rest, GREY, "other attractors")] if rest.any() else rows
+    return [*rows, (rest, looks.GREY, "other attractors")] if rest.any() else rows
 
 
 # The cascade beside a border orbit: impacts of the released orbit, and what attracts it, over the distance.
@@ -374,7 +360,12 @@ CASCADE_WORDS = {
     "rest": "attractor with complete chatter",
     "none": "no periodic attractor seen",
 }
-CASCADE_MARKS = {"same": ("o", BLUE), "more": ("D", ORANGE), "rest": ("^", VERMILLION), "none": (".", GREY)}
+CASCADE_MARKS = {
+    "same": ("o", looks.BLUE),
+    "more": ("D", looks.ORANGE),
+    "rest": ("^", looks.VERMILLION),
+    "none": (".", looks.GREY),
+}
 
 
 def draw_border(border: BorderOrbit, axes: Any, below: Any = None) -> Any:
@@ -395,7 +386,7 @@ def draw_border(border: BorderOrbit, axes: Any, below: Any = None) -> Any:
         if rows:
             look: dict[str, Any] = {"color": color, "linestyle": "none", "markeredgewidth": 0.9, "zorder": 4}
             axes.plot(*np.array(rows).T, marker, markersize=size, label=CASCADE_WORDS[kind], **look)
-    name = LETTERS.get(border.over, border.over)
+    name = looks.LETTERS.get(border.over, border.over)
     axes.set_title(
         f"border orbit at {name} = {float(border.parameter):.12g}, chatter completes {border.side}", fontsize="medium"
     )
@@ -417,7 +408,7 @@ def _stairs(cascade: Cascade, axes: Any) -> None:
     axes.plot(
         np.repeat(places, 2)[1:-1],
         np.repeat(np.concatenate([[cascade.impacts[0] - 1], cascade.impacts]), 2),
-        color=BLACK,
+        color=looks.BLACK,
         linewidth=1.0,
         zorder=2,
         label="released orbit, up to the end of $\\gamma$",
@@ -452,5 +443,5 @@ def _multipliers(samples: tuple[CascadeWindow, ...], border: BorderOrbit, axes: 
         ]
         if rows:
             axes.plot(*np.array(rows).T, marker, color=color, markersize=size, linestyle="none", zorder=4)
-    axes.axhline(1, color=BLACK, linewidth=0.6, zorder=1)
+    axes.axhline(1, color=looks.BLACK, linewidth=0.6, zorder=1)
     axes.set(yscale="log", ylim=(10**-2.5, 2), ylabel="larger multiplier, size")

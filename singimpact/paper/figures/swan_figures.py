@@ -354,7 +354,6 @@ def figure_16() -> Picture:
 
 
 def _landed_right(length: float) -> Array:
-    """Pi_0 right of B stays where it is: rest."""
     B = negative().B
     return np.array([[B, 0.0], [B + 0.75 * length, 0.0]])
 

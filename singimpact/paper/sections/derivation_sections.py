@@ -12,9 +12,6 @@ import sympy
 
 from singimpact.documents.document_steps import Section
 from singimpact.inputs import need, unknown
-from singimpact.paper.claims.beyond import hertz
-from singimpact.paper.claims.beyond.every_order import j
-from singimpact.paper.claims.beyond.foot import FORMULA
 from singimpact.paper.claims.beyond.order_three import HOP, RESTED
 from singimpact.paper.claims.sections.section6_loops import inner, preimage, r
 from singimpact.paper.routes import first_order, unfolding as swan
@@ -33,9 +30,7 @@ NAMES = {
 
 
 def beyond() -> dict[str, object]:
-    """The formulas of the section, by their names in its template; those that its words write out are checked."""
-    _check_hertz()
-    _check_foot()
+    """The formulas of the section, by their names in its template; tests check those that its words write out."""
     return {"r": r, **_first_order(), "inner": inner(), "preimage": preimage(), "flight": _flight(), **_border_orbit()}
 
 
@@ -56,22 +51,6 @@ def _first_order() -> dict[str, str]:
 def _border_orbit() -> dict[str, object]:
     """The hop, and the first terms of kappa as factors of -1, -sqrt(r) and -r."""
     return {"hop": HOP, "rested": [latex(-value) for value in RESTED]}
-
-
-def _check_hertz() -> None:
-    q = hertz.q
-    printed = (
-        3 * (1 - q) / (2 * (3 + (2 + q) * j)),
-        q * (3 + (2 + q) * j) * (3 + (1 + 2 * q) * j) / (3 * (1 - q) * (3 + 2 * j + 2 * j * q - j * q**2)),
-    )
-    if any(sympy.cancel(one - other) != 0 for one, other in zip((hertz.FACTOR, hertz.SECOND), printed, strict=True)):
-        raise ArithmeticError("a constant of gamma is not the one that is printed")
-
-
-def _check_foot() -> None:
-    formula = FORMULA.subs(sympy.Symbol("w"), sympy.Symbol("u"))
-    if sympy.expand(formula**7 - sympy.Rational(14, 3) ** 3 * sympy.Symbol("u") ** 3 / 144) != 0:
-        raise ArithmeticError("the limit is not the one that is printed")
 
 
 def _flight() -> Any:

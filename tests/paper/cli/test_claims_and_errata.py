@@ -170,3 +170,34 @@ def test_fixed_points(singimpact):
 def test_fixed_points_refuse_in_one_line(singimpact, arguments):
     result = singimpact("fixed-points", "tangency", *arguments)
     assert (result.exit_code, result.stdout, result.stderr.count("\n")) == (2, "", 1)
+
+
+def test_constants_have_their_claims_and_laws(singimpact):
+    rows = json.loads(singimpact("constants", "--r", "1/100", "--digits", "20", "--json").stdout)
+    assert [(row["name"], row["order"]) for row in rows] == [
+        *((name, order) for order in (1, 2, 3) for name in ("lambda", "mu")), ("X", 2), ("kappa_*", 3)
+    ]  # fmt: skip
+    assert {row["source"] for row in rows} <= set(si.claims.BEYOND)
+    value = {(row["name"], row["order"]): float(row["value"]["value"]) for row in rows}
+    assert all(float(row["value"]["radius"]) < 1e-18 for row in rows)
+    assert value["lambda", 2] == pytest.approx((0.01 / 3) ** (1 / 3), rel=0.1)
+    assert value["mu", 1] == pytest.approx(4 / value["lambda", 1], rel=0.3)
+    assert value["kappa_*", 3] == pytest.approx(-56 / 57**1.5 - 225 * 19**0.5 / 13718 / 10, rel=0.01)
+    assert "kappa_*" in singimpact("constants", "--r", "0.99").stdout
+
+
+def test_constants_near_one_follow_their_laws(singimpact):
+    rows = json.loads(singimpact("constants", "--r", "0.99", "--json").stdout)
+    value = {(row["name"], row["order"]): float(row["value"]["value"]) for row in rows}
+    for order in (1, 2, 3):
+        assert value["lambda", order] == pytest.approx(1 - 0.03 / (2 * order + 3), abs=1e-4)
+        assert value["mu", order] == pytest.approx(1.01, abs=1e-3)
+    assert value["X", 2] * 0.01 ** (3 / 7) == pytest.approx(2.94103, rel=0.01)
+    assert value["kappa_*", 3] + 2 / 3**1.5 == pytest.approx(0.2844281 * 0.01 ** (6 / 7), rel=0.01)
+
+
+@pytest.mark.parametrize("wrong", ["1", "0", "0.999", "pi/4", "x"])
+def test_constants_of_no_such_restitution(wrong, singimpact):
+    told = singimpact("constants", "--r", wrong)
+    assert told.exit_code == 2
+    assert "r = " in told.stderr

@@ -14,6 +14,7 @@ from singimpact import __version__
 from singimpact.documents import as_data, as_files, as_latex, as_text, claims_of, compiled, equations_of
 from singimpact.paper import CLAIMS, STRENGTH, a_symbol, m, mu_of_m, r_of_m, with_Q
 from singimpact.paper.claims import BEYOND
+from singimpact.paper.claims.beyond import every_order, foot, hertz
 from singimpact.paper.routes import fold
 from singimpact.theory import lambda_, leading_coefficient, mu_of_lambda, r_of_lambda
 
@@ -225,3 +226,15 @@ def test_master_and_single_document_compile_with_nothing_sticking_out(told, mark
         assert done.pdf.startswith(b"%PDF")
         assert max(done.overfull, default=0) <= 20
         assert "undefined references" not in done.log
+
+
+def test_constants_that_words_of_the_section_beyond_write_out():
+    """Of gamma under Hertz's law, and of the foot X for r near 1."""
+    q, j, u = sympy.symbols("q j u")
+    first = 3 * (1 - q) / (2 * (3 + (2 + q) * j))
+    second = q * (3 + (2 + q) * j) * (3 + (1 + 2 * q) * j) / (3 * (1 - q) * (3 + 2 * j + 2 * j * q - j * q**2))
+    for own, written in ((hertz.FACTOR, first), (hertz.SECOND, second)):
+        assert sympy.cancel(own.subs({hertz.q: q, every_order.j: j}) - written) == 0
+        assert sympy.cancel(own.subs({hertz.q: q, every_order.j: j}) - 2 * written) != 0
+    limit = foot.FORMULA.subs(sympy.Symbol("w"), u)
+    assert sympy.expand(limit**7 - (14 * u / (3 * sympy.cbrt(144))) ** 3) == 0

@@ -43,7 +43,6 @@ LANDING = sympy.Rational(1, 2) - j * e / 3 + j * (j - 1) * e**2 / 8  # U/e
 
 
 def _expanded() -> list[tuple[str, bool]]:
-    """v and U to the third order of the flight."""
     landed, units = {ell: 1 - e, L: _binomial(-e, j, 4)}, (j + 1) * (j + 2) * e**2
     pairs = (CLOSED_P, LAUNCH), (CLOSED_Q, LANDING)
     holds = all(_vanishes(closed - units * form, landed, e, 4) for closed, form in pairs)

@@ -291,7 +291,6 @@ def _bound(quantity: str, sign: int, measured: Callable[[Place], float]) -> Tria
 
 
 def _ratio(point: Place) -> float:
-    """The limit of q~/p~ on true flights."""
     return point.leading(lambda h: _velocities(point, h)[1] / _velocities(point, h)[0])
 
 

@@ -146,7 +146,6 @@ def _symmetric(stated: int) -> Check:
 
 
 def _ends(stated: tuple[int, int]) -> Check:
-    """Signs of a' at A and at B for kappa > 0."""
     slopes = [model.slope_of_acceleration(point[0]) / kappa for point in (model.A, model.B)]
     found = tuple(int(sympy.sign(slope)) for slope in slopes)
     return section6_exact.persisting(
