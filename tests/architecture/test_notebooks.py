@@ -15,8 +15,8 @@ def notebooks(request):
     }
 
 
-def test_seven_stories_in_order(notebooks):
-    assert [name.partition("_")[0] for name in notebooks] == ["1", "2", "3", "4", "5", "6", "7"]
+def test_nine_stories_in_order(notebooks):
+    assert [name.partition("_")[0] for name in notebooks] == ["1", "2", "3", "4", "5", "6", "7", "8", "9"]
 
 
 def test_what_a_notebook_imports_is_there(notebooks):
