@@ -88,7 +88,7 @@ def behaviour(study: Study, row: Array) -> LongRun:
     Examples
     --------
     >>> from singimpact.oscillator.model import Oscillator
-    >>> behaviour(Study(Oscillator("x", "-1", 0, 1), (), 1.0, 100), np.array([CHATTER, -1.0, 0.0])).name
+    >>> behaviour(Study(Oscillator("x", "-1", 0, 1), (), 1.0, 100), np.array([attractors.CHATTER, -1.0, 0.0])).name
     'rest for ever'
     """
     model, (code, tau, v) = study.model, row.tolist()

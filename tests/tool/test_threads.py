@@ -105,6 +105,8 @@ CALLS = {
         (20, 40),
     ),
     "border_orbits": ([lambda d: borders(digits=d)[0].parameter], (20,)),
+    "constants": ([lambda d: [constant.value for constant in si.constants("1/2", d)]], (20,)),
+    "contact_points": ([lambda d: si.contact_points(si.linear(2, 0, "1/2"), 2, "clearance", digits=d)], (12, 30)),
     "ImpactOscillator.periodic": ([lambda d: CLOSED.periodic(1, 2, digits=d)], (25,)),
     "threshold": ([lambda d: si.threshold(LINEAR, "pi/2.8", digits=d)], (10,)),
     "tangency_points": ([points], (12, 35)),
@@ -124,7 +126,7 @@ CALLS = {
     }.items()
 }  # fmt: skip
 SLOW = ("ImpactOscillator.periodic", "threshold")  # flown by two threads alone
-SECONDS = {*SLOW, "Crossing.certified", "Event.certified", "border_orbits"}  # left to the slow test
+SECONDS = {*SLOW, "Crossing.certified", "Event.certified", "border_orbits", "constants"}  # left to the slow test
 
 
 def bits(value):
