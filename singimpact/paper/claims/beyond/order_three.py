@@ -14,7 +14,7 @@ from singimpact.paper.claims.verifiers import every, is_zero, root_of_line, same
 s, d, D, m, t, x, b, e, S, T = sympy.symbols("s d D m t x b e S T", positive=True)
 HOP = s**3 / 60 * (3 * s**2 - 5 * (d + D) * s + 10 * d * D)  # d and D are t_2 and t_3
 LANDED = {D: (3 - 5 * d) / (5 * (1 - 2 * d))}  # of a hop of length 1
-FROM_LAST, TO_SWAN = sympy.Rational(2, 5), sympy.Rational(1, 2)  # d of a landing at t_3, and as t_1 and t_2 meet
+HOPS = {d: (sympy.Rational(2, 5), sympy.Rational(1, 2))}  # from a landing at t_3 to the swan in which t_1 and t_2 meet
 CUBIC = x * (x + 1) * (x + b)
 P, Q = (1 + b) ** 2 / 3 - b, CUBIC.subs(x, -(1 + b) / 3)  # kappa = Q/P^(3/2)
 
@@ -27,9 +27,10 @@ def _launch(height: sympy.Expr, start: sympy.Expr, length: sympy.Expr) -> sympy.
 
 
 def _one(stated: tuple[sympy.Expr, int, int]) -> Check:
-    """(d of a landing at t_3; signs of the derivatives by d of r, for a second flight to one place, and by b of kappa).
+    """(d of a landing at t_3; signs of the derivatives by d of r, for one second flight, and by b of kappa).
 
-    The place of the second landing is a part T of the way from t_2 to t_3, whose length is the unit.
+    T is the length of the second flight; its unit is t_3 - t_2, and so is that of the other two that are shown to be
+    monotone: the distance of the landing from t_3, and that of t_1.
     """
     last, nearer, falls = stated
     push = sympy.diff(HOP, s, 2)
@@ -48,12 +49,17 @@ def _one(stated: tuple[sympy.Expr, int, int]) -> Check:
             ("the orbit from rest at t_1 lands at 1 if t_3 = (3 - 5 t_2)/(5 (1 - 2 t_2))", lands),
             (
                 "its height vanishes again later alone",
-                positive_in(sympy.cancel((5 * (d + D) / 3 - 2).subs(LANDED)), {d: (FROM_LAST, TO_SWAN)}),
+                positive_in(sympy.cancel((5 * (d + D) / 3 - 2).subs(LANDED)), HOPS),
             ),
             (f"it lands at t_3 for t_2 = {last}", same(LANDED[D].subs(d, last), 1)),
             (
-                "the r for which the second flight comes to one place changes with t_2 by one sign",
-                positive_in(sympy.cancel(slope) * nearer, {d: (FROM_LAST, TO_SWAN), m: (0, 1)}),
+                "in units of t_3 - t_2 the hop ends the earlier the nearer t_1 is",
+                positive_in(sympy.cancel(sympy.diff(((D - 1) / (D - d)).subs(LANDED), d)), HOPS)
+                and positive_in(-sympy.cancel(sympy.diff((D / (D - d)).subs(LANDED), d)), HOPS),
+            ),
+            (
+                "and the r for which the second flight has one length changes by one sign",
+                positive_in(sympy.cancel(slope) * nearer, {**HOPS, m: (0, 1)}),
             ),
             ("ln|a_c| is concave between t_2 and t_3", same(bend, -sum((x + root) ** -2 for root in (0, 1, b)))),
             (
