@@ -1,4 +1,4 @@
-"""Studies of a model as a whole: swans, singular points, gamma and basins.
+"""Studies of a model as a whole: swans, singular points, gamma and basins; the numbers of the theory at one r.
 
 Each function calls one function of a sub-package, and reads windows and intervals as a user writes them.
 """
@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 from singimpact.algebra.numbers import as_float, as_fraction, constant
 from singimpact.impact_oscillator import ImpactOscillator, universal
-from singimpact.inputs import InputError, checked_keywords, refuse, require, require_known, takes_two_walls, whole
+from singimpact.inputs import InputError, checked_keywords, need, refuse, require, require_known, takes_two_walls, whole
 from singimpact.oscillator.model import Oscillator, require_model
 from singimpact.result import Result
 
@@ -137,9 +137,7 @@ def constants(r: object, digits: int = 30) -> tuple[Constant, ...]:
     from singimpact.theory.fixed_points import multipliers
 
     rate, precision = as_fraction(constant("r", r)), max(whole("digits", digits, 1, 1000), 16)
-    require(
-        rate is not None and Fraction(1, 10**6) <= rate <= Fraction(99, 100), "r", r, "a rational from 1e-6 to 0.99"
-    )
+    require(rate is not None and Fraction(1, 100) <= rate <= Fraction(99, 100), "r", r, "a rational from 0.01 to 0.99")
     values = []
     for order in (1, 2, 3):
         along = multipliers(order, rate, precision)
@@ -148,6 +146,8 @@ def constants(r: object, digits: int = 30) -> tuple[Constant, ...]:
     cubic = Oscillator("0", "t**3 - t + q", 0, rate, {"q": "-1/4"})
     (border,) = border_orbits(cubic, "q", ("-0.3849", "-0.13"), digits=precision, points=9)
     values.append(("kappa_*", 3, border.certified))
+    for name, _, value in values:
+        need(value is not None, ArithmeticError(f"{name} at r = {rate} is not certified to {precision} digits"))
     return tuple(Constant(name, order, value, *UNIVERSAL[name]) for name, order, value in values)
 
 

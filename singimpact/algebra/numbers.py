@@ -154,6 +154,17 @@ def rational_ends(
     raise refuse(name, values, accepted)
 
 
+def near_rational(name: str, value: object) -> Fraction:
+    """The rational that a user gives, or one within 2^-64, relative, of another constant.
+
+    Examples
+    --------
+    >>> near_rational("v", "1/3"), float(near_rational("v", "pi"))
+    (Fraction(1, 3), 3.141592653589793)
+    """
+    return rational_near(constant(name, value), 64)
+
+
 def rational_near(tree: Expression, bits: int) -> Fraction:
     """A rational within about 2^-bits, relative, of a constant tree; the number itself where it is rational.
 

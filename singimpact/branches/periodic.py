@@ -18,7 +18,7 @@ import numpy as np
 from singimpact.algebra.balls import BITS_A_DIGIT, as_rational
 from singimpact.algebra.expressions import names_in
 from singimpact.algebra.isolated_zeros import IsolatedZeros
-from singimpact.algebra.numbers import Array, as_float, constant, rational_ends, rational_near
+from singimpact.algebra.numbers import Array, as_float, constant, near_rational, rational_ends
 from singimpact.algebra.precision import balls_at, digits_at, for_user
 from singimpact.branches.ball_closing import BallClosing, return_slope
 from singimpact.branches.closing import Closing
@@ -103,7 +103,7 @@ def periodic(
         raise InputError("the forcing has no period: a periodic orbit needs one, or f and g free of t")
     k, window = (
         _count("k", k, 1),
-        None if v is None else rational_ends("v", v, WINDOW, lambda name, end: rational_near(constant(name, end), 64)),
+        None if v is None else rational_ends("v", v, WINDOW, near_rational),
     )
     require(window is None or window[0] >= 0, "v", v, WINDOW)
     if osc.plastic and v is not None:

@@ -12,19 +12,18 @@ from singimpact.algebra.balls import Balls
 from singimpact.algebra.certified import Certified, from_ball
 from singimpact.algebra.derivatives import derivative
 from singimpact.algebra.expressions import Expression, Name, names_in
-from singimpact.algebra.isolated_zeros import Box, Place, repeated_zeros
-from singimpact.algebra.numbers import Array, as_float, as_fraction, constant
+from singimpact.algebra.isolated_zeros import Box, RepeatedZero, repeated_zeros
+from singimpact.algebra.numbers import Array, near_rational, rational_ends
 from singimpact.algebra.precision import balls_at
 from singimpact.contact.contact import rest_acceleration
-from singimpact.contact.points import MOST_DIGITS, window
-from singimpact.inputs import checked_keywords, refuse, require, whole
+from singimpact.contact.points import MOST_DIGITS, in_period, window
+from singimpact.inputs import checked_keywords, require, whole
 from singimpact.oscillator.model import Oscillator, require_model
 from singimpact.oscillator.moving_number import CLEARANCE, period_over, value_of, with_number
 from singimpact.result import Result, Results
 
 AROUND = Fraction(1, 2)  # of a number, or of 1 where it is 0: half the interval that is searched without `between`
 GUARD_BITS = 64
-SAME = 1e-12  # of a period: a point at 0 is found with a tiny sign
 
 
 @dataclass(frozen=True, repr=False)
@@ -153,11 +152,9 @@ def contact_points(
     box = (_times(osc, names, ends), *ends)
     bits = whole("digits", digits, 1, MOST_DIGITS) * 4 + GUARD_BITS
     zeros = repeated_zeros(tree, ("t", *names), box, bits)
-    turn = np.inf if osc.period is None else as_float(osc.period)
-    inside = [zero for zero in zeros.found if turn == np.inf or -SAME <= float(zero.at) / turn < 1 - SAME]
     # what is equal but for the last bits of a ball, such as times a symmetry apart, must not be told by them
     listed = sorted(
-        (_point(osc, tree, names, zero.place, digits) for zero in inside),
+        (_point(osc, tree, names, zero, digits) for zero in zeros.found if in_period(osc, float(zero.at))),
         key=lambda point: [round(value, 12) for value in (point.tau, *point.numbers.values())],
     )
     points = ContactPoints(listed)
@@ -173,14 +170,8 @@ def _acceleration(osc: Oscillator, names: Sequence[str]) -> Expression:
 def _ends(name: str, pair: object, value: float) -> tuple[Fraction, Fraction]:
     middle = Fraction(value)
     reach = AROUND * (abs(middle) or 1)
-    try:
-        sides = (middle - reach, middle + reach) if pair is None else cast("Sequence[object]", pair)
-        trees = [constant("between", end) for end in sides]
-        low, high = (as_fraction(tree) or Fraction(as_float(tree)) for tree in trees)
-    except (TypeError, ValueError):
-        raise refuse("between", pair, f"two ends low < high of {name}") from None
-    require(low < high, "between", pair, f"two ends low < high of {name}")
-    return low, high
+    sides = (middle - reach, middle + reach) if pair is None else pair
+    return rational_ends("between", sides, f"two ends low < high of {name}", near_rational)
 
 
 def _times(
@@ -195,15 +186,15 @@ def _times(
     return min(low for low, _ in windows), max(high for _, high in windows)
 
 
-def _point(osc: Oscillator, tree: Expression, names: Sequence[str], box: Place, digits: int) -> ContactPoint:
-    order = len(box)
-    tau, *values = (from_ball(ball, digits) for ball in box)
+def _point(osc: Oscillator, tree: Expression, names: Sequence[str], zero: RepeatedZero, digits: int) -> ContactPoint:
+    order = len(zero.place)
+    tau, *values = (from_ball(ball, digits) for ball in zero.place)
     doubles = (0.0 if number.contains(0) else float(number.value) for number in (tau, *values))
     at = dict(zip(("t", *names), doubles, strict=True))
     balls = Balls(128)
     rows, down = [], tree
     with balls_at(128):
-        at_point = {name: balls.rational(Fraction(value)) for name, value in at.items()}
+        at_point = dict(zip(("t", *names), zero.place, strict=True))
         for _ in range(order):
             rows.append([float(balls.evaluate(derivative(down, name), at_point).mid()) for name in names])
             down = derivative(down, "t")
@@ -212,4 +203,4 @@ def _point(osc: Oscillator, tree: Expression, names: Sequence[str], box: Place, 
     model = osc.replace(**{name: str(value) for name, value in zip(names, values, strict=True)})
     certified = {"tau": tau, **dict(zip(names, values, strict=True))}
     slopes = np.array(rows[:-1]).T
-    return ContactPoint(model, order, time, at, 1 if leading > 0 else -1, certified, slopes, leading)
+    return ContactPoint(model, order, time, at, zero.sign, certified, slopes, leading)

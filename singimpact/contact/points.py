@@ -21,6 +21,7 @@ from singimpact.oscillator.model import Oscillator
 from singimpact.result import Result, Results
 
 MOST_DIGITS = 100_000
+SLACK = 1e-12  # of a period: a zero at 0 is found with a tiny sign
 
 
 @dataclass(frozen=True, repr=False)
@@ -153,7 +154,7 @@ def _points(oscillator: Oscillator) -> tuple[TangencyPoint, ...]:
     points = []
     for zero in isolate(function, "t", low, high):
         points += [TangencyPoint(function, zero, KINDS[zero.slope])] if zero.slope else _decided(function, zero)
-    return tuple(_within(points, oscillator))
+    return tuple(sorted((p for p in points if in_period(oscillator, p.tau)), key=lambda point: point.tau))
 
 
 def window(oscillator: Oscillator, function: Expression) -> tuple[Fraction, Fraction]:
@@ -231,9 +232,9 @@ def _beside(function: Expression, zero: Zero, turn: Fraction, slope: int) -> lis
     return [TangencyPoint(function, piece, KINDS[piece.slope]) for piece in left + right]
 
 
-def _within(points: list[TangencyPoint], oscillator: Oscillator) -> list[TangencyPoint]:
+def in_period(oscillator: Oscillator, tau: float) -> bool:
+    """Whether a time lies in [0, T); every one does where there is no period."""
     if oscillator.period is None:
-        return sorted(points, key=lambda point: point.tau)
+        return True
     period = as_float(oscillator.period)
-    slack = 1e-12 * period  # a zero at 0 is found with a tiny sign
-    return sorted((p for p in points if -slack <= p.tau < period - slack), key=lambda point: point.tau)
+    return -SLACK * period <= tau < period * (1 - SLACK)

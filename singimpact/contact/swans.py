@@ -28,7 +28,7 @@ from singimpact.algebra.numbers import as_float, sign_of
 from singimpact.algebra.precision import kept_property
 from singimpact.algebra.rings import EXACT, SYMBOLIC, ExactAtAngles
 from singimpact.contact.contacts_over import contact_points
-from singimpact.contact.points import enclosed, is_polynomial, window
+from singimpact.contact.points import enclosed, in_period, is_polynomial, window
 from singimpact.inputs import InputError
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import CLEARANCE
@@ -156,7 +156,7 @@ def swan_points_over_clearance(model: Oscillator, between: tuple[Fraction, Fract
                 f"g' has zeros near t = {float(zero.low):.6g} that are not simple: they are not classified"
             )
         time = _named_time(model, slope, zero)
-        if _in_period(model, as_float(time)):
+        if in_period(model, as_float(time)):
             kind = "positive" if zero.slope * sign_of(substitute(factor, {"t": time})) > 0 else "negative"
             places, window_of_them = _clearances(model, time, between)
             points += [SwanPoint(model, time, clearance, kind) for clearance in places]
@@ -190,13 +190,6 @@ def _slope_of_swans(model: Oscillator) -> tuple[Expression, Expression]:
     if "t" not in names_in(A):
         return derivative(push, "t"), number(1)
     return subtract(multiply(derivative(push, "t"), A), multiply(push, derivative(A, "t"))), A
-
-
-def _in_period(model: Oscillator, tau: float) -> bool:
-    if model.period is None:
-        return True
-    period = as_float(model.period)
-    return -1e-12 * period <= tau < period * (1 - 1e-12)  # a zero at 0 is found with a tiny sign
 
 
 def _named_time(model: Oscillator, slope: Expression, zero: Zero) -> Expression:

@@ -196,7 +196,7 @@ def test_constants_near_one_follow_their_laws(singimpact):
     assert value["kappa_*", 3] + 2 / 3**1.5 == pytest.approx(0.2844281 * 0.01 ** (6 / 7), rel=0.01)
 
 
-@pytest.mark.parametrize("wrong", ["1", "0", "0.999", "pi/4", "x"])
+@pytest.mark.parametrize("wrong", ["1", "0", "0.999", "0.009", "pi/4", "x"])
 def test_constants_of_no_such_restitution(wrong, singimpact):
     told = singimpact("constants", "--r", wrong)
     assert told.exit_code == 2

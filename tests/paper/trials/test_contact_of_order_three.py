@@ -61,6 +61,7 @@ def test_where_nothing_is_lost_it_is_the_curve_of_swans():
     constant = near_one(float(low))
     assert isclose(constant, 0.284428145, abs_tol=1e-8)
     assert isclose(near_one(float(high)), constant, abs_tol=1e-7)
+    assert f"{constant:.7f}" in si.constants("1/2", 16)[-1].at_one
     ratios = [(kappa(r, ("-0.3849", "-0.37")) + SWAN) / (1 - float(r)) ** (6 / 7) / constant for r in ("0.99", "0.999")]
     assert ratios[0] < ratios[1] < 1
     assert 1 - ratios[1] < 0.25 * (1 - ratios[0])

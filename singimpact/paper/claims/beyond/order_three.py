@@ -93,8 +93,17 @@ def _without_rebound(stated: tuple[sympy.Expr, ...]) -> Check:
     coefficients = [sympy.expand(sympy.radsimp(coefficient)) for coefficient in series]
     return every(
         [
-            (f"on gamma a flight from S ends a part m = {share} + O(e^2) of the way to t_3", True),
-            (f"so the hop lands at S = {near[S].subs(values)} + O(e^3)", True),
+            (
+                f"on gamma a flight from S ends a part m = {share} + O(e^2) of the way to t_3",
+                same((1 - share) ** 2 * slow.subs(m, 1), e**2 * fast.subs(m, 1)),
+            ),
+            (
+                f"so the hop lands at S = {near[S].subs(values)} + O(e^3)",
+                all(
+                    sympy.expand(equation.coeff_monomial(e**power).subs(values)) == 0
+                    for equation, power in ((landing, 1), (landing, 2), (speed, 2), (speed, 3))
+                ),
+            ),
             (f"and kappa has the coefficients {coefficients}", coefficients == list(map(sympy.expand, stated))),
         ],
         "argued",
