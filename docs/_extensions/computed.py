@@ -177,6 +177,52 @@ def gamma_proved(place: Path) -> None:
     axes.figure.savefig(place / "gamma_proved.png", dpi=110)
 
 
+def grazing_exponent(place: Path) -> None:
+    """The picture of the page on the exponent beyond a graze: the law of the limit, and exponents of the oscillator."""
+    import numpy as np
+    from matplotlib.figure import Figure
+
+    import singimpact as si
+    from singimpact.scenes.style import BLUE, GREY, ORANGE
+
+    damping, omega, r = 3, 8, 0.5
+    slow, fast = np.sort(-np.roots([1, damping, 1]))
+    period = 2 * np.pi / omega
+    lam, c = np.exp(-slow * period), (1 + r) * omega * np.sqrt(2) / (fast - slow)
+    e = np.logspace(-7, -2, 300)
+    delta = np.linspace(0.01, 0.99, 2000) * (1 - lam)
+    kappa, periods, steps = 0.0, 0.0, 100
+    for step in range(-50, steps):
+        root = c / np.sqrt(e)[:, None] * np.sqrt(delta)
+        m = np.ceil(np.log(root) / -np.log(lam))
+        if step >= 0:
+            kappa = kappa + np.log(root * lam**m / (2 * delta)).mean(axis=1) / steps
+            periods = periods + m.mean(axis=1) / steps
+        delta = np.maximum(1 - root * lam**m, 1e-16)
+
+    tau = float(np.angle(1 - omega**2 + 1j * damping * omega)) / omega
+    parts = np.random.default_rng(0).uniform(0.01, 1, 25)
+    of_impacts = np.logspace(-6, -2, 25)
+    found = []
+    for each in of_impacts:
+        osc = si.models.lamba_budd(damping=damping, omega=omega, beyond=float(each)).replace(restitution=r)
+        lyapunov = osc.lyapunov(tau, r * omega * np.sqrt(2 * each * (1 - lam) * parts), 2000, transient=100)
+        found.append((lyapunov.per_impact[:, 0].mean(), lyapunov.exponents[:, 0].mean()))
+
+    upper, lower = Figure(figsize=(7.2, 6.4), layout="constrained").subplots(2, sharex=True)
+    dots = {"color": ORANGE, "marker": "o", "markersize": 4, "linestyle": "none", "label": "50 000 impacts each"}
+    upper.plot(e, kappa, color=BLUE, label=r"$\kappa$ of the limit map")
+    lower.plot(e, kappa / periods / period, color=BLUE, label="the law of the limit map")
+    lower.plot(e, 2 * slow * kappa.mean() / -np.log(e), "--", color=GREY, label=r"$K/|\ln e|$, its first term alone")
+    for axes, values, label in zip((upper, lower), np.transpose(found), ("an impact", "a unit of time"), strict=True):
+        axes.plot(of_impacts, values, **dots)
+        axes.set(xscale="log", ylabel=f"exponent {label}")
+        axes.legend(loc="upper left", ncols=2)
+    upper.set(ylim=(1.28, 1.68))  # room for the legend
+    lower.set(xlabel="$e$, by which the orbit without impact passes the wall", xlim=(1e-7, 1e-2))
+    upper.figure.savefig(place / "grazing_exponent.png", dpi=110)
+
+
 LIVE = ("shaw_holmes", "budd_dux", "duffing_friction", "luck_mehta", "pendulum", "universal_swan")
 
 
@@ -202,7 +248,8 @@ def build(app: Any) -> None:
     for name in steps(pages, "computing pages... "):
         put(place / f"{name}.md", pages[name]())
     put(place / "fates.txt", fates())  # no page of its own
-    pictures = {"branches": branches, "manifolds": manifolds, "gamma_proved": gamma_proved}
+    pictures = {"branches": branches, "manifolds": manifolds, "gamma_proved": gamma_proved,
+                "grazing_exponent": grazing_exponent}  # fmt: skip
     for name in steps(pictures, "drawing pictures... "):
         pictures[name](place)
     for page in steps(sorted((Path(app.srcdir) / "models").glob("*.md")), "drawing named models... ", "{0.stem}"):

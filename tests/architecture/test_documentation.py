@@ -33,7 +33,7 @@ def test_pages_are_there(site, clone):
     pages = ["index", "install", "tutorial", "notebooks", "computed/gallery/index", "how_to", "reference"]
     pages += ["conventions", "trust", "stress", "benchmarks"]
     ideas = ["index", "impact_surface", "regular", "tangency", "swan", "unfolding", "one_structure"]
-    ideas += ["fates", "branches", "gamma_proved", "manifolds"]
+    ideas += ["fates", "branches", "gamma_proved", "manifolds", "grazing_exponent"]
     computed = ["errata", "claims", "commands", "figures"]
     pages += ["changelog", "citation", "bibliography", "faq", "models", "stability"]
     pages += [f"reference/{path.stem}" for path in (clone / "docs" / "reference").glob("*.md")]
