@@ -10,6 +10,7 @@ from singimpact.branches.event_curve import event_curve as event_curve
 from singimpact.branches.homoclinic import homoclinic_points as homoclinic_points
 from singimpact.branches.homoclinic_end import homoclinic_end as homoclinic_end
 from singimpact.branches.manifold import manifold as manifold
+from singimpact.branches.resting_windows import resting_windows as resting_windows
 from singimpact.branches.transitions import transitions as transitions
 from singimpact.cases import sweep as sweep
 from singimpact.certificates.certificate import certify as certify, read_certificate as read_certificate

@@ -62,7 +62,7 @@ class ImpactOscillator(Oscillator):
     # studies of the model as a whole, each documented as a function of `singimpact`
     basins, bifurcation, lyapunov, threshold = Study(), Study(), Study(), Study()
     tangency_points, classify, grown_gamma, release_map = Study(), Study(), Study(), Study()
-    border_orbits, certified_diagram, transitions = Study(), Study(), Study()
+    border_orbits, resting_windows, certified_diagram, transitions = Study(), Study(), Study(), Study()
     contact_points, explore, selftest = Study(), Study(), Study()
     ensemble, regions, fit, sensitivity = Study(), Study(), Study(), Study()
 

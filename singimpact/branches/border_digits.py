@@ -228,7 +228,7 @@ def _followed(flow: AnalyticFlow, times: tuple[float, float], entry: int) -> tup
     ----------
     times : of the release and of that zero, in doubles. entry : the number of the impact.
     """
-    start, end = (_rising_zero(flow, time) for time in times)
+    start, end = (rising_zero(flow, time) for time in times)
     if start is None or end is None:
         return None
     time, v, removed = start, flow.number(Fraction(0)), 3
@@ -237,20 +237,20 @@ def _followed(flow: AnalyticFlow, times: tuple[float, float], entry: int) -> tup
         if hit is None or hit.time is None or not hit.velocity < 0:
             return None
         time, v, removed = time + hit.time, -flow.r * hit.velocity, 1
-    return (time, v, end) if _presses(flow.acceleration, time, end, SETTINGS.around) else None
+    return (time, v, end) if presses(flow.acceleration, time, end, SETTINGS.around) else None
 
 
-def _rising_zero(flow: AnalyticFlow, near: float) -> Any | None:
+def rising_zero(flow: AnalyticFlow, near: float, around: Fraction = SETTINGS.around) -> Any | None:
     """The zero of a_c next to a double, where it is the only one and a_c rises; for every value in the flow's balls."""
     middle = flow.number(Fraction(near))
-    reach = flow.number(SETTINGS.around)
+    reach = flow.number(around)
     low, high = middle - reach, middle + reach
     if not (flow.acceleration(low) < 0 and flow.acceleration(high) > 0 and flow.acceleration(low.union(high), 1) > 0):
         return None
     return newton_in_balls(flow.acceleration, lambda t: flow.acceleration(t, 1), low.union(high))
 
 
-def _presses(acceleration: Callable[..., Any], time: Any, end: Any, around: Fraction) -> bool:
+def presses(acceleration: Callable[..., Any], time: Any, end: Any, around: Fraction) -> bool:
     """Whether a_c < 0 from a time up to a zero where it rises, before which it is known to rise for `around`."""
     high = as_rational(end) - around / 2
     pieces, left = [(as_rational(time.lower()), high)], SETTINGS.pieces

@@ -39,7 +39,8 @@ LABELS = [
     "b:order-expansion", "b-rising", "b:first-order", "b-chi", "b:first-order-foot", "b:holder-bounds",
     "b:hertz", "b:hertz-next",
     "b:loops-map",
-    "b-loops-preimage", "b:foot", "b:foot-limit", "b-three-hop", "b:three-one", "b:three-rest",
+    "b-loops-preimage", "b:foot", "b:foot-limit", "b:border-order", "b-border-hop",
+    "b-border-landing", "b-border-bound", "b-three-hop", "b:three-one", "b:three-rest", "b:three-elastic",
     "b:onset-hop", "b:events-front",
     "b:events-critical", "b:events-first", "b:cascade-contraction",
 ]  # fmt: skip

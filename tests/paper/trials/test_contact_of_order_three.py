@@ -43,6 +43,51 @@ def test_without_rebound_it_is_a_series_in_the_root_of_r():
     assert abs(float(left[2]) / float(left[1]) - 1) < 0.2 < abs(wrong / float(left[1]) - 1)
 
 
+def hop(release, others, sign):
+    """The landing of the mass released at a zero of a_c, and its speed over |a_c| there: by numpy's polynomials."""
+    push = np.polynomial.Polynomial(np.real(np.polynomial.polynomial.polyfromroots([release, *others]) * sign))
+    velocity = push.integ(lbnd=release)
+    roots = velocity.integ(lbnd=release).roots()
+    # three zeros at the release are of the flight itself
+    landed = roots[(abs(roots.imag) < 1e-9) & (roots.real > release + 1e-3)].real.min(initial=1e3)
+    return landed, velocity(landed) / push(landed)
+
+
+def hops(others, sign):
+    """Of the releases from far to near before zeros of which a_c < 0 between the first two: those that land there."""
+    rows = [hop(others[0].real - gap, others, sign) for gap in np.geomspace(4, 0.02, 200)]
+    return np.array([row for row in rows if row[0] < others[1].real]).T
+
+
+@pytest.mark.parametrize("order", [3, 4, 5, 6])
+def test_hops_land_sooner_and_slower_the_later_they_begin(order):
+    """The links of b:border-order, for drawn zeros."""
+    rng = np.random.default_rng(order)
+    for _ in range(20):
+        landed, slow = hops(np.cumsum(rng.uniform(0.2, 1.5, order - 1)), (-1) ** (order - 1))
+        assert landed.size > 3 and (np.diff(landed) < 0).all() and (np.diff(slow) < 0).all()
+
+
+def test_where_the_logarithm_is_not_concave_hops_need_not_land_slower():
+    """Two zeros that are not real, beside the middle of the two: what the links need of p is not for nothing."""
+    landed, slow = hops(np.array([0, 1, 0.5 + 0.05j, 0.5 - 0.05j]), 1)
+    assert (np.diff(landed) < 0).all() and not (np.diff(slow) < 0).all()
+
+
+@pytest.mark.parametrize(("order", "r"), [(4, "0.5"), (5, "0.3"), (6, "0.8")])
+def test_one_border_orbit_from_the_lowest_zero_at_every_order(order, r):
+    """And at most one from a zero that has others before it, as b:border-order says."""
+    rng = np.random.default_rng(order)
+    others = np.round(np.cumsum(rng.uniform(0.4, 1.2, order - 1)), 3).tolist()
+    product = "*".join(f"(t - {zero})" for zero in others)
+    osc = si.ImpactOscillator("0", f"{(-1) ** (order - 1)}*(t - u)*{product}", 0, r, {"u": -1})
+    found = si.border_orbits(osc, "u", (others[0] - 4, others[0] - 0.02), points=60)
+    first = [orbit for orbit in found if isclose(orbit.release, orbit.parameter, abs_tol=1e-9)]
+    assert [round(orbit.end, 6) for orbit in first].count(round(others[1], 6)) == 1
+    # the release next to the double zero rests, that far before it passes: neither end of the search does both
+    assert all(orbit.side == "above" for orbit in first if isclose(orbit.end, others[1]))
+
+
 def near_one(u):
     """C of kappa + 2/3^(3/2) = C (1 - r)^(6/7), from the adiabatic invariant u of the elastic ball in a swan.
 

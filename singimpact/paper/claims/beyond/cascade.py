@@ -1,8 +1,13 @@
 """The cascade beside a border orbit: what a launch next to a release forgets, and how fast the windows shrink."""
 
+from fractions import Fraction
+
 import sympy
 
 from singimpact.algebra.certificates import positive_on
+from singimpact.branches.border import border_orbits
+from singimpact.branches.resting_windows import resting_windows
+from singimpact.oscillator.model import Oscillator
 from singimpact.paper.claims.claim import Check, Encoding
 from singimpact.paper.claims.sections.section4a_blowup import HALF, THREE_HALVES
 from singimpact.paper.claims.sections.section4a_multipliers import ray_m3
@@ -72,6 +77,42 @@ def _in_r(stated: tuple[int, int]) -> Check:
     return every([derived, ("so are lambda^2 mu and r put in", composed)])
 
 
+def _rests(stated: tuple[str, str, int, tuple[str, str]]) -> Check:
+    """(low, high, k, borders): for all G between the first two the released ball is released again k periods later.
+
+    borders : the nearest border orbits on both sides, to twelve decimals.
+    """
+    low, high, periods, borders = stated
+    found = resting_windows(BALL, "G", (low, high), periods=periods, pieces=PIECES)
+    beside = []
+    for place in map(Fraction, borders):
+        near = float(place - NEXT), float(place + NEXT)
+        beside += border_orbits(BALL, "G", near, digits=DIGITS, periods=periods, points=3)
+    values = [orbit.certified for orbit in beside]
+    return every(
+        [
+            (
+                f"balls fly all orbits of an interval of G, which covers {float(found.share):.6g} of it",
+                found.share == 1 and {one.periods for one in found} == {periods},
+            ),
+            (
+                f"border orbits of {periods} periods are certified at G = {', '.join(map(str, values))}",
+                len(values) == len(borders)
+                and all(
+                    ball is not None and orbit.period == periods and f"{float(ball.value):.12f}" == border
+                    for ball, orbit, border in zip(values, beside, borders, strict=True)
+                ),
+            ),
+        ],
+        "certified",
+        witness=lambda: {"windows": str(found), "borders": str(values)},
+    )
+
+
+BALL = Oscillator("1", "G*sin(t)", 0, "1/2", {"G": "19/10"})
+PIECES, DIGITS = 256, 16
+NEXT = Fraction(1, 10**4)  # half the width of the search for a border orbit
+BORDERS = ("1.893700796003", "1.939751233691")
 CLAIMS = {
     "b:cascade-launch": Encoding(
         (3, v - a_symbol(1) * sigma**2 / 2),
@@ -92,6 +133,15 @@ CLAIMS = {
             (3, _FACTOR * lam, "above"),
             (2, lam * (2 + lam) / (1 + 2 * lam), "below"),
             (2, 1 - (1 - lam**2) / (1 + 2 * lam) ** 2, "below"),
+        ),
+    ),
+    "b:resting-window": Encoding(
+        ("1.9", "1.93", 5, BORDERS),
+        _rests,
+        (
+            ("1.9", "1.901", 4, BORDERS),
+            ("1.939", "1.94", 5, BORDERS),
+            ("1.9", "1.901", 5, ("1.893700796004", BORDERS[1])),
         ),
     ),
     "b:cascade-contraction-r": Encoding((2, 3), _in_r, ((2, 2), (1, 3), (2, 5))),

@@ -1,4 +1,4 @@
-"""Contact order three, a_c = t^3 + p t + q: the border orbit from the first zero of a_c to the third, for every r.
+"""Contacts of every order: the border orbit from a zero of a_c to the next but one; at order three for every r.
 
 The orbit is released at the first zero t_1.  With t_1 = 0 and the length of its hop for 1 it lands at 1; near the
 limits t_1 = -1, t_2 = -b, t_3 = 0.
@@ -10,6 +10,7 @@ from singimpact.algebra.certificates import positive_in
 from singimpact.algebra.derivations import At, substitution
 from singimpact.paper.claims.claim import Check, Encoding
 from singimpact.paper.claims.verifiers import every, is_zero, root_of_line, same
+from singimpact.paper.trials.universal_foot import elastic
 
 s, d, D, m, t, x, b, e, S, T = sympy.symbols("s d D m t x b e S T", positive=True)
 HOP = s**3 / 60 * (3 * s**2 - 5 * (d + D) * s + 10 * d * D)  # d and D are t_2 and t_3
@@ -26,23 +27,62 @@ def _launch(height: sympy.Expr, start: sympy.Expr, length: sympy.Expr) -> sympy.
     return velocity
 
 
-def _one(stated: tuple[sympy.Expr, int, int]) -> Check:
-    """(d of a landing at t_3; signs of the derivatives by d of r, for one second flight, and by b of kappa).
+def _every_order(stated: tuple[int, int]) -> Check:
+    """(n, sign): 1 - dw/dL = w (n/T + p'/p), and the sign of dL/dt_1, for a_c = (t - t_1) p and a landing L.
 
-    T is the length of the second flight; its unit is t_3 - t_2, and so is that of the other two that are shown to be
-    monotone: the distance of the landing from t_3, and that of t_1.
+    h is the height of the hop, k that of a flight from rest at t_1 under p; w = h'/a_c at L, and T = L - t_1.
     """
-    last, nearer, falls = stated
+    power, sooner = stated
+    k = sympy.Function("k")(t)
+    speed, push, bend = sympy.symbols("speed push bend")  # of k; of p and its derivative
+    lift, falling = sympy.Symbol("lift", positive=True), sympy.Symbol("falling", negative=True)  # k and h' at L
+    rate = T * speed - lift
+    earlier = rate / lift  # dt_1/dL
+    changes = (T * push - speed * earlier) / (T * push) - rate * (push + T * bend - push * earlier) / (T * push) ** 2
+    fading = sympy.exp(-m * x)
+    left, made = 2 * x * (1 - x), m * (1 - x) ** 2 + 2 * (1 - x)
+    below = sympy.expand((power + m) * (1 - x) ** power + left - made) == 0
+    return every(
+        [
+            (
+                "k > 0 at the landing, as (t_2 - s) p(s) > 0, and -k = dh/dt_1",
+                sympy.sign(lift / falling) == sooner,
+            ),
+            (
+                "h' = (t - t_1) k' - k, as both are 0 at t_1",
+                same(sympy.diff((t - x) * sympy.diff(k, t) - k, t), (t - x) * sympy.diff(k, t, 2)),
+            ),
+            (
+                "so w has the derivative that is stated",
+                same(changes, 1 - rate / (T * push) * (power / T + bend / push)),
+            ),
+            (
+                "with m = T p'/p the integral of (2 + m) (1 - x)^2 exp(-m x) over (0, 1) is below 1",
+                below
+                and is_zero(sympy.expand((sympy.diff(-((1 - x) ** 2) * fading, x) - made * fading) / fading))
+                and positive_in(left, {x: (0, 1)}),
+            ),
+            (
+                "which times T is more than w, as ln|p| is concave; so w rises with L",
+                same(sympy.diff(1 / (t - x), t), -((t - x) ** -2)) and is_zero((1 - x) - x * (1 - x) - (1 - x) ** 2),
+            ),
+            (
+                "1 + s/S falls and 1 - s/S rises with S = L - t_1: launches lengthen, landings quicken",
+                same(sympy.diff(1 + s / S, S), -s / S**2) and same(sympy.diff(1 - s / S, S), s / S**2),
+            ),
+        ],
+        "argued",
+        witness=lambda: {"power": str(power), "sign": str(sooner)},
+    )
+
+
+def _one(stated: tuple[sympy.Expr, int]) -> Check:
+    """(d of a landing at t_3; sign of the derivative by b of kappa): what is beside the theorem of every order."""
+    last, falls = stated
     push = sympy.diff(HOP, s, 2)
     lands = is_zero(HOP.subs(LANDED).subs(s, 1)) and same(push, s * (s - d) * (s - D))
     if lands:
         substitution(At(HOP, {s: sympy.Integer(1), **LANDED}), sympy.Integer(0))
-    width = (D - d).subs(LANDED)
-    rate = sympy.factor(
-        _launch(HOP.subs(s, x), sympy.Integer(1), t).subs(LANDED) / -sympy.diff(HOP, s).subs(LANDED).subs(s, 1)
-    )
-    slope = sympy.diff(rate.subs(t, T * width), d).subs(T, m * (LANDED[D] - 1) / width)
-    bend = sympy.diff(sympy.diff(CUBIC, x) / CUBIC, x)
     kappa = sympy.cancel((P * sympy.diff(Q, b) - sympy.Rational(3, 2) * Q * sympy.diff(P, b)) * falls)
     return every(
         [
@@ -52,24 +92,10 @@ def _one(stated: tuple[sympy.Expr, int, int]) -> Check:
                 positive_in(sympy.cancel((5 * (d + D) / 3 - 2).subs(LANDED)), HOPS),
             ),
             (f"it lands at t_3 for t_2 = {last}", same(LANDED[D].subs(d, last), 1)),
-            (
-                "in units of t_3 - t_2 the hop ends the earlier the nearer t_1 is",
-                positive_in(sympy.cancel(sympy.diff(((D - 1) / (D - d)).subs(LANDED), d)), HOPS)
-                and positive_in(-sympy.cancel(sympy.diff((D / (D - d)).subs(LANDED), d)), HOPS),
-            ),
-            (
-                "and the r for which the second flight has one length changes by one sign",
-                positive_in(sympy.cancel(slope) * nearer, {**HOPS, m: (0, 1)}),
-            ),
-            ("ln|a_c| is concave between t_2 and t_3", same(bend, -sum((x + root) ** -2 for root in (0, 1, b)))),
-            (
-                "a_c of two places d < D of t_1 before t_2 has a quotient (x + d)/(x + D) that rises",
-                same(sympy.diff((x + d) / (x + D), x), (D - d) / (x + D) ** 2),
-            ),
             ("kappa changes with b by one sign", positive_in(kappa, {b: (0, 1)})),
         ],
         "argued",
-        witness=lambda: {"t_3": str(LANDED[D].subs(d, last)), "signs": str((nearer, falls))},
+        witness=lambda: {"t_3": str(LANDED[D].subs(d, last)), "sign": str(falls)},
     )
 
 
@@ -111,17 +137,57 @@ def _without_rebound(stated: tuple[sympy.Expr, ...]) -> Check:
     )
 
 
+def _elastic(stated: tuple[int, sympy.Expr, str]) -> Check:
+    """(p, formula, C): the limit of h^(7/3)/(1 - r), 2h = t_2 - t_1; kappa less its swan is like C (1 - r)^(3p/7).
+
+    u = v/|a_c|^(1/3) after the swan is that of the elastic ball there, h^(7/3) u/12^(2/3), as r -> 1.
+    """
+    power, formula, value = stated
+    first, second = (sympy.diff((Q / P ** sympy.Rational(3, 2)).subs(b, 1 - 2 * e), e, n).subs(e, 0) for n in (1, 2))
+    # of a flight of length T under the push 1 + s x + S x^2: launch and landing over T/2, and the push at its end
+    launch, landing, end = 1 + s * T / 3 + S * T**2 / 6, 1 + 2 * s * T / 3 + S * T**2 / 2, 1 + s * T + S * T**2
+    change = sympy.expand(landing**3 - launch**3 * end)
+    whole = sympy.gammasimp(sympy.gamma(sympy.Rational(5, 3)) * sympy.gamma(sympy.Rational(7, 3)) / 6)
+    bounds = [second / 2 * formula.subs(m, sympy.Rational(end)) ** sympy.Rational(6, 7) for end in elastic().invariant]
+    printed = [f"{sympy.N(bound, 20):.{len(value) - 2}f}" for bound in bounds]
+    return every(
+        [
+            ("u changes at the third order of a flight", all(change.coeff(T, n) == 0 for n in range(3))),
+            (
+                "where |a_c| falls launches are slower, landings faster than under one push, so each flight is longer "
+                "than r times the last, and shorter than 1 - r of the way to t_3",
+                positive_in(m * x * (1 - x), {x: (0, 1), m: (0, sympy.oo)}),
+            ),
+            (
+                "so the changes of u vanish in all, and t |a_c|^(2/3) = 2u adds up to the integral of |a_c|^(2/3)",
+                same(CUBIC.subs(b, 1), x * (x + 1) ** 2)
+                and is_zero(12 ** sympy.Rational(2, 3) * whole / (2 * m) - formula),
+            ),
+            (f"kappa exceeds that of the swan by {second / 2} h^{power}", first == 0 and power == 2),
+            (
+                f"and {second / 2} times the {power * 3}/7-th power of that limit is {' to '.join(printed)}",
+                {*printed} == {value},
+            ),
+        ],
+        "argued",
+        witness=lambda: {"value": str(printed), "stated": value},
+    )
+
+
 ROOTS = tuple(map(sympy.sqrt, (19, 38, 57)))
+USED = 4 * sympy.pi * 12 ** sympy.Rational(2, 3) / (81 * sympy.sqrt(3) * m)  # m is u of the universal swan
 RESTED = (-56 * ROOTS[2] / 3249, -225 * ROOTS[0] / 13718, -2625 * ROOTS[2] / 260642 - 225 * ROOTS[1] / 109744)
 CLAIMS = {
-    "b:three-one": Encoding(
-        (sympy.Rational(2, 5), 1, -1),
-        _one,
-        ((sympy.Rational(3, 7), 1, -1), (sympy.Rational(2, 5), -1, -1), (sympy.Rational(2, 5), 1, 1)),
-    ),
+    "b:border-order": Encoding((2, -1), _every_order, ((1, -1), (3, -1), (2, 1))),
+    "b:three-one": Encoding((sympy.Rational(2, 5), -1), _one, ((sympy.Rational(3, 7), -1), (sympy.Rational(2, 5), 1))),
     "b:three-rest": Encoding(
         RESTED,
         _without_rebound,
         ((RESTED[0], -RESTED[1], RESTED[2]), (RESTED[0], RESTED[1], RESTED[2] + sympy.Rational(1, 10**9))),
+    ),
+    "b:three-elastic": Encoding(
+        (2, USED, "0.2844281"),
+        _elastic,
+        ((1, USED, "0.2844281"), (2, 2 * USED, "0.2844281"), (2, USED, "0.2844282")),
     ),
 }

@@ -1,0 +1,237 @@
+"""Whole intervals of a number of the model for which the released orbit comes to rest again, proved.
+
+After an impact the states of all members of an interval lie in one set
+
+    tau = a + b d + e,  v = a' + b' d + e',  |d| <= h,
+
+d the number less that of the middle, h half the length of the interval, with bounds of e and e'. The next impact takes
+this set to another one: its centre is the image of the middle's, and by the mean value theorem (b, b') is taken by D G,
+in balls over a box that holds the set; what these balls are wide joins e. The mass is at rest where a_c presses from an
+impact up to a zero of a_c, and bounds of what is left of the chatter end before that zero (`enclosed.side`).
+
+Next to a release x - c is of third order in the time since then, for each member at its own release: terms of second
+order, which other members of the box have, are left out.
+"""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from singimpact.algebra.balls import Balls, as_rational
+from singimpact.algebra.expressions import number
+from singimpact.algebra.numbers import as_float, rational_ends
+from singimpact.algebra.precision import balls_at
+from singimpact.branches.border_digits import presses, rising_zero
+from singimpact.branches.resting import Released, Releases, clock
+from singimpact.dynamics.enclosed import enclosable, side
+from singimpact.dynamics.long_run import rising_zeros
+from singimpact.flights.enclosures.analytic_flow import AnalyticFlow
+from singimpact.flights.enclosures.certified_hit import Launch, ProvedImpact, certified_hit
+from singimpact.flights.enclosures.equation import NoHit, Refused
+from singimpact.flights.horizons import horizon_of
+from singimpact.inputs import checked_keywords, require, whole
+from singimpact.oscillator.model import Oscillator, require_rebound
+from singimpact.oscillator.moving_number import with_number
+from singimpact.result import Result, Results
+
+BITS, DIGITS = 100, 20  # of balls, and of the flights of middles
+AROUND = Fraction(1, 2**7)  # a zero of a_c moves by less, of the period, within a piece
+LATE = 30  # impacts, after the first that may be followed by rest, at which bounds of the chatter are tried
+WIDE = 3  # a velocity whose bounds are so many times wider than it is followed no more
+
+
+class RestingWindow(NamedTuple):
+    """An interval of the number, the index of the release, and after how many periods a_c next lifts the mass off.
+
+    For all numbers of low <= number <= high the orbit released at that zero of a_c comes to rest, first before that
+    time. `periods` is a whole number where both zeros are one in the period.
+    """
+
+    low: Fraction
+    high: Fraction
+    release: int
+    periods: float
+
+
+class RestingWindows(Results, list[RestingWindow]):
+    """Windows in order, those that touch joined.
+
+    Parameters
+    ----------
+    between : the interval that was searched. releases : in a period.
+    """
+
+    called = "windows"
+
+    def __init__(
+        self,
+        windows: Iterable[RestingWindow] = (),
+        between: tuple[Fraction, Fraction] = (Fraction(0), Fraction(0)),
+        releases: int = 1,
+    ) -> None:
+        super().__init__(windows)
+        self.between, self.releases = between, releases
+
+    @property
+    def share(self) -> Fraction:
+        """Of the interval, times the releases, that the windows cover."""
+        low, high = self.between
+        return sum((one.high - one.low for one in self), Fraction(0)) / ((high - low) * self.releases)
+
+
+class _Line(NamedTuple):
+    # centre + slope d + e, |e| <= error
+
+    centre: Fraction
+    slope: Fraction
+    error: Fraction
+
+    def reach(self, half: Fraction) -> Fraction:
+        return abs(self.slope) * half + self.error
+
+
+@checked_keywords
+def resting_windows(
+    osc: Oscillator, over: str, between: tuple[Any, Any], *, periods: int = 10, pieces: int = 1000
+) -> RestingWindows:
+    """Intervals of a number for all of which a released orbit comes to rest again: proved, and not said of others.
+
+    Parameters
+    ----------
+    osc : analytic, with a period and a number r < 1. over : the number: "clearance", "restitution" or a parameter.
+    between : (low, high), rational. periods : within which the orbit rests.
+    pieces : the interval is halved where it is not decided, down to its length over `pieces`.
+
+    Returns
+    -------
+    list of `RestingWindow`, with `.share`. A window is open in the parameter, and every border orbit lies outside.
+
+    Raises
+    ------
+    InputError : a model that balls do not fly or without a period; ends that are none.
+
+    Examples
+    --------
+    >>> ball = Oscillator("1", "G*sin(t)", 0, "1/2", {"G": "19/10"})
+    >>> found = resting_windows(ball, "G", ("1.9", "1.901"), pieces=4)
+    >>> [(float(one.low), float(one.high), one.periods) for one in found], found.share
+    ([(1.9, 1.901, 5.0)], Fraction(1, 1))
+    """
+    require(isinstance(osc, Oscillator), "osc", osc, "an ImpactOscillator")
+    require_rebound(osc, "rest after chatter")
+    flown = osc.period is not None and enclosable(osc)
+    require(flown, "model", osc, "one with a period, whose restitution is a number below 1")
+    low, high = rational_ends("between", between, "two rational numbers low < high")
+    osc = with_number(osc, over)
+    releases = Releases(osc, over, whole("periods", periods, 1, 1000))
+    least = (high - low) / whole("pieces", pieces, 1, 10**6)
+    phases = rising_zeros(releases.model((low + high) / 2))
+    found = [
+        RestingWindow(*ends, index, after)
+        for index in range(len(phases))
+        for *ends, after in _joined(_searched(releases, phases, index, (low, high), least))
+    ]
+    return RestingWindows(found, (low, high), len(phases))
+
+
+def _searched(
+    releases: Releases, phases: tuple[float, ...], index: int, ends: tuple[Fraction, Fraction], least: Fraction
+) -> Iterator[tuple[Fraction, Fraction, float]]:
+    # pieces that are proved, in order, and the periods from the release to the end of rest
+    pieces = [ends]
+    while pieces:
+        low, high = pieces.pop()
+        middle = (low + high) / 2
+        model = releases.model(middle)
+        near = releases.followed(model, phases)
+        orbit = releases.orbit(model, near, index)
+        if orbit.place and _rests(releases, orbit, (low, high)):
+            yield low, high, float(round((orbit.zeros[orbit.place - 1] - orbit.tau) / clock(model), 9))
+        elif high - low > least:
+            pieces += [(middle, high), (low, middle)]
+
+
+def _joined(pieces: Iterable[tuple[Fraction, Fraction, float]]) -> list[tuple[Fraction, Fraction, float]]:
+    joined: list[tuple[Fraction, Fraction, float]] = []
+    for low, high, after in pieces:
+        begun = joined and joined[-1][1:] == (low, after)
+        joined.append((joined.pop()[0] if begun else low, high, after))
+    return joined
+
+
+def _rests(releases: Releases, orbit: Released, ends: tuple[Fraction, Fraction]) -> bool:
+    # whether all members come to rest before that zero of a_c before which the orbit of the middle does
+    low, high = ends
+    half, balls = (high - low) / 2, Balls(BITS)
+    around = AROUND * Fraction(clock(orbit.model))
+    with balls_at(BITS):
+        flow = AnalyticFlow(orbit.model, BITS, (releases.over, balls.interval(low, high)))
+        times = orbit.tau, float(orbit.zeros[orbit.place - 1])
+        start, end = (rising_zero(flow, time, around) for time in times)
+        own = rising_zero(AnalyticFlow(orbit.model, BITS), orbit.tau)
+        if start is None or end is None or own is None:
+            return False
+        entry, pressing = orbit.entry(orbit.place), False
+        for impact, (tau, v) in enumerate(_landings(releases, orbit.model, half, (own, start)), 1):
+            if impact < entry:
+                continue
+            time, speed = (
+                balls.interval(line.centre - line.reach(half), line.centre + line.reach(half)) for line in (tau, v)
+            )
+            pressing = pressing or presses(flow.acceleration, time, end, around)
+            if not pressing or impact > entry + LATE:
+                return False
+            fate = side(flow, end, time, speed)
+            if fate is not None:
+                return fate < 0
+    return False
+
+
+def _landings(
+    releases: Releases, model: Oscillator, half: Fraction, start: tuple[Any, Any]
+) -> Iterator[tuple[_Line, _Line]]:
+    # the sets after each impact, as far as they are narrow: from the release of the middle, and that of all
+    horizon, nothing = Fraction(horizon_of(model, None)), Fraction(0)
+    at = _middle(start[0])
+    off, moved = (as_rational(abs(zero - Balls(BITS).rational(at)).upper()) for zero in start)
+    lines, removed = (_Line(at, nothing, moved), _Line(nothing, nothing, nothing)), 3
+    while True:
+        tau, v = lines
+        speed, radii = number(v.centre), {"tau": tau.reach(half), "v": v.reach(half), releases.over: half}
+        if removed > 1:
+            del radii["v"]
+        try:
+            exact = Launch(number(tau.centre), speed, removed, {"tau": off} if removed > 1 else {})
+            middle = certified_hit(model, exact, DIGITS, horizon)
+            over = certified_hit(
+                model, Launch(number(tau.centre), speed, removed, radii), DIGITS, horizon, derivative=True
+            )
+        except (Refused, NoHit):
+            return
+        lines, removed = _taken(over, middle, lines, half), 1
+        if not lines[1].centre > WIDE * lines[1].reach(half):
+            return
+        yield lines
+
+
+def _taken(
+    over: ProvedImpact, middle: ProvedImpact, lines: tuple[_Line, _Line], half: Fraction
+) -> tuple[_Line, _Line]:
+    # the image of a set
+    rational = Balls(BITS).rational
+    taken = []
+    for row, image in zip(over.derivative, (middle.tau, middle.v), strict=True):
+        slope = sum(by * rational(line.slope) for by, line in zip(row[:2], lines, strict=True)) + row[-1]
+        at, along = _middle(image), _middle(slope)
+        error = sum(abs(by) * rational(line.error) for by, line in zip(row[:2], lines, strict=True))
+        error += abs(slope - rational(along)) * rational(half) + abs(image - rational(at))
+        taken.append(_Line(at, along, as_rational(error.upper())))
+    return taken[0], taken[1]
+
+
+def _middle(ball: Any) -> Fraction:
+    return Fraction(float(ball.mid()))
