@@ -95,7 +95,7 @@ def interval(between: Any) -> tuple[Fraction, Fraction]:
 UNIVERSAL = {
     "lambda": ("b:order-ray", "(r/(j+1))^(1/(j+1))", "1 - 3(1-r)/(2j+3)"),
     "mu": ("b:order-saddle", "(j+1)^2/lambda", "1 + (1-r)"),
-    "X": ("b:foot-monotone", "3", "2.9410294 (1-r)^(-3/7), supported by numbers"),
+    "X": ("b:foot-monotone", "3", "2.9410294 (1-r)^(-3/7)"),
     "kappa_*": ("b:three-one", "-56/57^(3/2) - 225 sqrt(19 r)/13718", "-2/3^(3/2) + 0.2844281 (1-r)^(6/7)"),
 }
 

@@ -4,26 +4,24 @@ After an impact the states of all members of an interval lie in one set
 
     tau = a + b d + e,  v = a' + b' d + e',  |d| <= h,
 
-d the number less that of the middle, h half the length of the interval, with bounds of e and e'. The next impact takes
-this set to another one: its centre is the image of the middle's, and by the mean value theorem (b, b') is taken by D G,
-in balls over a box that holds the set; what these balls are wide joins e. The mass is at rest where a_c presses from an
+d the number less that of the middle, h half the length of the interval, with bounds of e and e'; a set that starts as a
+parallelogram has two more terms of this kind. The next impact takes this set to another one: its centre is the image of
+the middle's, and by the mean value theorem (b, b') is taken by D G, in balls over a box that holds the set; what these
+balls are wide joins e. The mass is at rest where a_c presses from an
 impact up to a zero of a_c, and bounds of what is left of the chatter end before that zero (`enclosed.side`).
 
 Next to a release x - c is of third order in the time since then, for each member at its own release: terms of second
 order, which other members of the box have, are left out.
 """
 
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
-from itertools import pairwise
+from functools import partial
 from typing import Any, NamedTuple
-
-import numpy as np
 
 from singimpact.algebra.balls import Balls, as_rational
 from singimpact.algebra.expressions import number
-from singimpact.algebra.numbers import as_float, rational_ends
+from singimpact.algebra.numbers import rational_ends
 from singimpact.algebra.precision import balls_at
 from singimpact.branches.border_digits import presses, rising_zero
 from singimpact.branches.resting import Released, Releases, clock
@@ -36,7 +34,7 @@ from singimpact.flights.horizons import horizon_of
 from singimpact.inputs import checked_keywords, require, whole
 from singimpact.oscillator.model import Oscillator, require_rebound
 from singimpact.oscillator.moving_number import with_number
-from singimpact.result import Result, Results
+from singimpact.result import Results
 
 BITS, DIGITS = 100, 20  # of balls, and of the flights of middles
 AROUND = Fraction(1, 2**7)  # a zero of a_c moves by less, of the period, within a piece
@@ -83,15 +81,20 @@ class RestingWindows(Results, list[RestingWindow]):
         return sum((one.high - one.low for one in self), Fraction(0)) / ((high - low) * self.releases)
 
 
-class _Line(NamedTuple):
-    # centre + slope d + e, |e| <= error
+class Line(NamedTuple):
+    """A phase or a velocity of all members: centre + the sum of slope d + e, |e| <= error, |d| <= its half."""
 
     centre: Fraction
-    slope: Fraction
+    slopes: tuple[Fraction, ...]
     error: Fraction
 
-    def reach(self, half: Fraction) -> Fraction:
-        return abs(self.slope) * half + self.error
+    def reach(self, halves: Sequence[Fraction]) -> Fraction:
+        """How far members are from the centre."""
+        return sum((abs(slope) * half for slope, half in zip(self.slopes, halves, strict=True)), self.error)
+
+
+Lines = tuple[Line, Line]
+"""A set of states, (tau, v)."""
 
 
 @checked_keywords
@@ -176,11 +179,11 @@ def _rests(releases: Releases, orbit: Released, ends: tuple[Fraction, Fraction])
         if start is None or end is None or own is None:
             return False
         entry, pressing = orbit.entry(orbit.place), False
-        for impact, (tau, v) in enumerate(_landings(releases, orbit.model, half, (own, start)), 1):
+        for impact, (tau, v) in enumerate(released_sets(orbit.model, releases.over, half, (own, start)), 1):
             if impact < entry:
                 continue
             time, speed = (
-                balls.interval(line.centre - line.reach(half), line.centre + line.reach(half)) for line in (tau, v)
+                balls.interval(line.centre - line.reach([half]), line.centre + line.reach([half])) for line in (tau, v)
             )
             pressing = pressing or presses(flow.acceleration, time, end, around)
             if not pressing or impact > entry + LATE:
@@ -191,46 +194,61 @@ def _rests(releases: Releases, orbit: Released, ends: tuple[Fraction, Fraction])
     return False
 
 
-def _landings(
-    releases: Releases, model: Oscillator, half: Fraction, start: tuple[Any, Any]
-) -> Iterator[tuple[_Line, _Line]]:
-    # the sets after each impact, as far as they are narrow: from the release of the middle, and that of all
-    horizon, nothing = Fraction(horizon_of(model, None)), Fraction(0)
-    at = _middle(start[0])
+def released_sets(model: Oscillator, over: str, half: Fraction, start: tuple[Any, Any]) -> Iterator[Lines]:
+    """The sets after each impact, as far as they are narrow, of orbits that are released.
+
+    Parameters
+    ----------
+    model, over, half : that of the middle, the number, and half the length of its interval.
+    start : the release of the middle, and that of all: balls.
+    """
+    at, nothing = _middle(start[0]), Fraction(0)
     off, moved = (as_rational(abs(zero - Balls(BITS).rational(at)).upper()) for zero in start)
-    lines, removed = (_Line(at, nothing, moved), _Line(nothing, nothing, nothing)), 3
+    return flown_sets(model, over, [half], (Line(at, (nothing,), moved), Line(nothing, (nothing,), nothing)), off)
+
+
+def flown_sets(
+    model: Oscillator, over: str, halves: Sequence[Fraction], lines: Lines, released: Fraction | None = None
+) -> Iterator[Lines]:
+    """The sets after each impact of those that start in one.
+
+    Parameters
+    ----------
+    halves : of the number first, then of what else the set has slopes by.
+    released : of a set of releases, how far that of the middle may be from the centre.
+    """
+    horizon, removed = Fraction(horizon_of(model, None)), 1 if released is None else 3
     while True:
         tau, v = lines
-        speed, radii = number(v.centre), {"tau": tau.reach(half), "v": v.reach(half), releases.over: half}
-        if removed > 1:
+        launch = partial(Launch, number(tau.centre), number(v.centre), removed)
+        radii = {"tau": tau.reach(halves), "v": v.reach(halves), over: halves[0]}
+        if released is not None:
             del radii["v"]
         try:
-            exact = Launch(number(tau.centre), speed, removed, {"tau": off} if removed > 1 else {})
-            middle = certified_hit(model, exact, DIGITS, horizon)
-            over = certified_hit(
-                model, Launch(number(tau.centre), speed, removed, radii), DIGITS, horizon, derivative=True
-            )
+            middle = certified_hit(model, launch({} if released is None else {"tau": released}), DIGITS, horizon)
+            members = certified_hit(model, launch(radii), DIGITS, horizon, derivative=True)
         except (Refused, NoHit):
             return
-        lines, removed = _taken(over, middle, lines, half), 1
-        if not lines[1].centre > WIDE * lines[1].reach(half):
+        lines, released, removed = _taken(members, middle, lines, halves), None, 1
+        if not lines[1].centre > WIDE * lines[1].reach(halves):
             return
         yield lines
 
 
-def _taken(
-    over: ProvedImpact, middle: ProvedImpact, lines: tuple[_Line, _Line], half: Fraction
-) -> tuple[_Line, _Line]:
+def _taken(members: ProvedImpact, middle: ProvedImpact, lines: Lines, halves: Sequence[Fraction]) -> Lines:
     # the image of a set
     rational = Balls(BITS).rational
-    taken = []
-    for row, image in zip(over.derivative, (middle.tau, middle.v), strict=True):
-        slope = sum(by * rational(line.slope) for by, line in zip(row[:2], lines, strict=True)) + row[-1]
-        at, along = _middle(image), _middle(slope)
-        error = sum(abs(by) * rational(line.error) for by, line in zip(row[:2], lines, strict=True))
-        error += abs(slope - rational(along)) * rational(half) + abs(image - rational(at))
-        taken.append(_Line(at, along, as_rational(error.upper())))
-    return taken[0], taken[1]
+    images = []
+    for (by_tau, by_v, by_number), image in zip(members.derivative, (middle.tau, middle.v), strict=True):
+        by_state = list(zip((by_tau, by_v), lines, strict=True))
+        slopes = [sum(by * rational(line.slopes[i]) for by, line in by_state) for i in range(len(halves))]
+        slopes[0] += by_number
+        centre, along = _middle(image), [_middle(slope) for slope in slopes]
+        error = abs(image - rational(centre)) + sum(abs(by) * rational(line.error) for by, line in by_state)
+        for slope, straight, half in zip(slopes, along, halves, strict=True):
+            error += abs(slope - rational(straight)) * rational(half)
+        images.append(Line(centre, tuple(along), as_rational(error.upper())))
+    return images[0], images[1]
 
 
 def _middle(ball: Any) -> Fraction:

@@ -65,13 +65,16 @@ def test_hops_land_sooner_and_slower_the_later_they_begin(order):
     rng = np.random.default_rng(order)
     for _ in range(20):
         landed, slow = hops(np.cumsum(rng.uniform(0.2, 1.5, order - 1)), (-1) ** (order - 1))
-        assert landed.size > 3 and (np.diff(landed) < 0).all() and (np.diff(slow) < 0).all()
+        assert landed.size > 3
+        assert (np.diff(landed) < 0).all()
+        assert (np.diff(slow) < 0).all()
 
 
 def test_where_the_logarithm_is_not_concave_hops_need_not_land_slower():
     """Two zeros that are not real, beside the middle of the two: what the links need of p is not for nothing."""
     landed, slow = hops(np.array([0, 1, 0.5 + 0.05j, 0.5 - 0.05j]), 1)
-    assert (np.diff(landed) < 0).all() and not (np.diff(slow) < 0).all()
+    assert (np.diff(landed) < 0).all()
+    assert not (np.diff(slow) < 0).all()
 
 
 @pytest.mark.parametrize(("order", "r"), [(4, "0.5"), (5, "0.3"), (6, "0.8")])
@@ -100,7 +103,7 @@ def near_one(u):
 
 
 def test_where_nothing_is_lost_it_is_the_curve_of_swans():
-    """Supported by numbers: the average over many impacts has no bound here."""
+    """The law of b:three-elastic, to which border orbits tend."""
     low, high = elastic().invariant
     assert Fraction(low) < Fraction(high)
     constant = near_one(float(low))

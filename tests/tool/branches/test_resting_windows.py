@@ -45,7 +45,8 @@ def test_all_orbits_of_the_windows_of_a_ball_rest_as_they_say():
     found = si.resting_windows(BALL, "G", ("1.9", "1.94"), pieces=100, periods=8)
     assert 0.9 < found.share < 1
     (widest,) = (one for one in found if one.high - one.low > 1 / 50)
-    assert widest.periods == 5 and widest.release == 0
+    assert widest.periods == 5
+    assert widest.release == 0
     rng = np.random.default_rng(1)
     for G in rng.uniform(float(widest.low), float(widest.high), 12):
         assert rests_after(G, 0.5) == 5
@@ -57,7 +58,9 @@ def test_no_window_reaches_a_border_orbit():
     for value in PLATEAU:
         ends = value - 1e-5, value + 1e-5
         found = si.resting_windows(BALL, "G", [f"{end:.9f}" for end in ends], pieces=40)
-        assert len(found) and not covers(found, value) and found.share < 1
+        assert len(found)
+        assert not covers(found, value)
+        assert found.share < 1
         # one side of it rests after five periods, up to a tenth of this interval
         near = min(abs(float(end) - value) for one in found if one.periods == 5 for end in (one.low, one.high))
         assert near < 2e-6
@@ -84,7 +87,7 @@ def at_rest_before_release(numbers, periods):
     release = (2 * np.pi - math.acos(c)) / omega
     start, v, last = release + 1e-9, 1e-18, release + periods * 2 * np.pi / omega
 
-    def hit(t, y):
+    def hit(_t, y):
         return y[0] - c
 
     hit.terminal, hit.direction = True, -1
@@ -111,7 +114,8 @@ def at_rest_before_release(numbers, periods):
 def test_flights_from_other_phases_and_long_waits_are_left_open():
     """r = 0.95 at which chatter takes long: nothing is said within one period, and nothing wrong."""
     found = si.resting_windows(BALL.replace(restitution="0.95"), "G", ("1.9", "1.901"), periods=1, pieces=4)
-    assert found.share == 0 and not found
+    assert found.share == 0
+    assert not found
 
 
 @pytest.mark.parametrize(

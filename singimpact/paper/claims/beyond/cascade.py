@@ -1,12 +1,23 @@
 """The cascade beside a border orbit: what a launch next to a release forgets, and how fast the windows shrink."""
 
+from collections.abc import Sequence
 from fractions import Fraction
+from itertools import islice
+from typing import NamedTuple
 
+import numpy as np
 import sympy
 
+from singimpact.algebra.balls import Balls
 from singimpact.algebra.certificates import positive_on
+from singimpact.algebra.numbers import Array, rational_near
+from singimpact.algebra.precision import balls_at
 from singimpact.branches.border import border_orbits
-from singimpact.branches.resting_windows import resting_windows
+from singimpact.branches.border_digits import rising_zero
+from singimpact.branches.resting_windows import Line, Lines, flown_sets, released_sets, resting_windows
+from singimpact.dynamics.long_run import rising_zeros
+from singimpact.dynamics.orbit import orbit
+from singimpact.flights.enclosures.analytic_flow import AnalyticFlow
 from singimpact.oscillator.model import Oscillator
 from singimpact.paper.claims.claim import Check, Encoding
 from singimpact.paper.claims.sections.section4a_blowup import HALF, THREE_HALVES
@@ -109,6 +120,75 @@ def _rests(stated: tuple[str, str, int, tuple[str, str]]) -> Check:
     )
 
 
+class _Trap(NamedTuple):
+    """A parallelogram of states: corner is its middle; inverse takes them to coordinates below size in it."""
+
+    corner: tuple[Fraction, Fraction]
+    inverse: tuple[tuple[Fraction, Fraction], ...]
+    size: Fraction
+
+    def holds(self, lines: Lines, halves: Sequence[Fraction]) -> bool:
+        """Whether a set lies in it, some periods later."""
+        tau, v = lines
+        period = rational_near(BALL.period, BITS)
+        later = round((tau.centre - self.corner[0]) / period) * period
+        return all(
+            abs(p * (tau.centre - self.corner[0] - later) + q * (v.centre - self.corner[1]))
+            + sum(abs(p * by + q * also) * half for by, also, half in zip(tau.slopes, v.slopes, halves, strict=True))
+            + abs(p) * (tau.error + ROUNDED)
+            + abs(q) * v.error
+            < self.size
+            for p, q in self.inverse
+        )
+
+
+def _never_rests(stated: tuple[str, Fraction, int, Fraction]) -> Check:
+    """(G, half, n, size): for all G within half of it the orbit ends in a set that n impacts take into itself."""
+    amplitude, half, impacts, size = stated
+    model = BALL.replace(G=amplitude)
+    (release,) = rising_zeros(model)
+    run = orbit(model, release, 0, 100 * impacts)
+    corner = Fraction(float(run.tau[-1])), Fraction(float(run.v[-1]))
+    halves = [half, size, size]
+
+    def returned(sides: Array) -> Lines:
+        rows = [(Fraction(0), *map(Fraction, row)) for row in sides.tolist()]
+        start = Line(corner[0], rows[0], Fraction(0)), Line(corner[1], rows[1], Fraction(0))
+        *_, lines = islice(flown_sets(model, "G", halves, start), impacts)
+        return lines
+
+    _, sides = np.linalg.eig(np.array([line.slopes[1:] for line in returned(np.eye(2))], dtype=float))
+    (a, b), (c, d) = ([Fraction(side) for side in row] for row in sides.tolist())
+    size_of = a * d - b * c
+    trap = _Trap(corner, ((d / size_of, -b / size_of), (-c / size_of, a / size_of)), size)
+    with balls_at(BITS):
+        ball = Balls(BITS).interval(Fraction(amplitude) - half, Fraction(amplitude) + half)
+        start = [
+            rising_zero(flow, release, NEXT)
+            for flow in (AnalyticFlow(model, BITS), AnalyticFlow(model, BITS, ("G", ball)))
+        ]
+        entered = next(
+            (
+                n
+                for n, lines in enumerate(released_sets(model, "G", half, (start[0], start[1])), 1)
+                if trap.holds(lines, [half])
+            ),
+            None,
+        )
+    return every(
+        [
+            (
+                f"{impacts} impacts take a set of states into itself, for all G of an interval",
+                trap.holds(returned(sides), halves),
+            ),
+            (f"the released orbits are in it after {entered} impacts", entered is not None),
+        ],
+        "certified",
+        witness=lambda: {"impacts": str(entered)},
+    )
+
+
+BITS, ROUNDED = 128, Fraction(1, 2**90)
 BALL = Oscillator("1", "G*sin(t)", 0, "1/2", {"G": "19/10"})
 PIECES, DIGITS = 256, 16
 NEXT = Fraction(1, 10**4)  # half the width of the search for a border orbit
@@ -142,6 +222,15 @@ CLAIMS = {
             ("1.9", "1.901", 4, BORDERS),
             ("1.939", "1.94", 5, BORDERS),
             ("1.9", "1.901", 5, ("1.893700796004", BORDERS[1])),
+        ),
+    ),
+    "b:never-rests": Encoding(
+        ("2.3695", Fraction(1, 10**8), 3, Fraction(1, 2000)),
+        _never_rests,
+        (
+            ("2.3695", Fraction(1, 10**8), 2, Fraction(1, 2000)),
+            ("2.3695", Fraction(1, 10**8), 3, Fraction(1, 500)),
+            ("2.3695", Fraction(1, 10**6), 3, Fraction(1, 2000)),
         ),
     ),
     "b:cascade-contraction-r": Encoding((2, 3), _in_r, ((2, 2), (1, 3), (2, 5))),
