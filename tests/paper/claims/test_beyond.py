@@ -42,6 +42,7 @@ KINDS = {
     "b:border-order": "argued",
     "b:three-one": "argued",
     "b:three-rest": "argued",
+    "b:three-events": "argued",
     "b:three-elastic": "argued",
     "b:loops-map": "proved modulo",
     "b:loops": "proved modulo",

@@ -40,7 +40,7 @@ LABELS = [
     "b:hertz", "b:hertz-next",
     "b:loops-map",
     "b-loops-preimage", "b:foot", "b:foot-limit", "b:border-order", "b-border-hop",
-    "b-border-landing", "b-border-bound", "b-three-hop", "b:three-one", "b:three-rest", "b:three-elastic",
+    "b-border-landing", "b-border-bound", "b-three-hop", "b:three-one", "b:three-rest", "b:three-elastic", "b:three-events",
     "b:onset-hop", "b:events-front",
     "b:events-critical", "b:events-first", "b:cascade-contraction",
     "b:resting-window",

@@ -174,6 +174,33 @@ def _elastic(stated: tuple[int, sympy.Expr, str]) -> Check:
     )
 
 
+def _events(stated: tuple[int, int, sympy.Expr]) -> Check:
+    """(a, b, kappa): the flight from a zero of a_c that grazes is C (s - a)^3 (s - b)^2, where q is kappa |p|^(3/2).
+
+    A flight has degree five, and no term of degree four as a_c has none of degree two.
+    """
+    rest, graze, value = stated
+    height = sympy.Poly((s - rest) ** 3 * (s - graze) ** 2, s)
+    push = height.diff((s, 2))
+    p, q = (push.coeff_monomial(s**n) / push.LC() for n in (1, 0))
+    mirrored = sympy.diff((s + rest) ** 3 * (s + graze) ** 2, s, 2).subs(s, -graze)
+    least = {"three rests": 2 + 2 + 2, "two rests at zeros of a_c": 3 + 3}
+    return every(
+        [
+            (
+                "a triple and a double zero have the sum 0",
+                3 * rest + 2 * graze == 0 and height.coeff_monomial(s**4) == 0,
+            ),
+            ("the flight is above the wall", positive_in(height.as_expr(), {s: (rest, graze)}) and rest < graze),
+            (f"and q = {value} |p|^(3/2) there", p < 0 and is_zero(q / (-p) ** sympy.Rational(3, 2) - value)),
+            ("its mirror image starts where a_c < 0", mirrored < 0),
+            (f"other events of the outline need {least} zeros of a flight", min(least.values()) > height.degree()),
+        ],
+        "argued",
+        witness=lambda: {"q/|p|^(3/2)": str(q / (-p) ** sympy.Rational(3, 2)), "stated": str(value)},
+    )
+
+
 ROOTS = tuple(map(sympy.sqrt, (19, 38, 57)))
 USED = 4 * sympy.pi * 12 ** sympy.Rational(2, 3) / (81 * sympy.sqrt(3) * m)  # m is u of the universal swan
 RESTED = (-56 * ROOTS[2] / 3249, -225 * ROOTS[0] / 13718, -2625 * ROOTS[2] / 260642 - 225 * ROOTS[1] / 109744)
@@ -184,6 +211,11 @@ CLAIMS = {
         RESTED,
         _without_rebound,
         ((RESTED[0], -RESTED[1], RESTED[2]), (RESTED[0], RESTED[1], RESTED[2] + sympy.Rational(1, 10**9))),
+    ),
+    "b:three-events": Encoding(
+        (-2, 3, -2 * sympy.sqrt(2) / 27),
+        _events,
+        ((-2, 3, 2 * sympy.sqrt(2) / 27), (-2, 3, -sympy.sqrt(2) / 27), (2, -3, -2 * sympy.sqrt(2) / 27)),
     ),
     "b:three-elastic": Encoding(
         (2, USED, "0.2844281"),
