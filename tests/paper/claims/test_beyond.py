@@ -14,6 +14,7 @@ KINDS = {
     "b:cascade-launch": "proved",
     "b:cascade-contraction": "proved",
     "b:resting-window": "certified",
+    "b:grazing-exponent": "argued",
     "b:never-rests": "certified",
     "b:cascade-contraction-r": "proved",
     "b:homoclinic": "certified",

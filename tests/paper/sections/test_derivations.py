@@ -43,7 +43,7 @@ LABELS = [
     "b-border-landing", "b-border-bound", "b-three-hop", "b:three-one", "b:three-rest", "b:three-elastic", "b:three-events",
     "b:onset-hop", "b:events-front",
     "b:events-critical", "b:events-first", "b:cascade-contraction",
-    "b:resting-window",
+    "b:resting-window", "b:grazing-exponent",
 ]  # fmt: skip
 
 

@@ -1,4 +1,4 @@
-"""Orbits born at a negative swan: none that recurs within it, and one chattering orbit that starts at A."""
+"""What is born: at a negative swan nothing that recurs but one orbit that starts at A; at a graze an exponent."""
 
 import sympy
 
@@ -6,10 +6,12 @@ from singimpact.algebra.certificates import positive_in
 from singimpact.algebra.derivations import At, substitution
 from singimpact.paper.claims.claim import Check, Encoding
 from singimpact.paper.claims.sections.section6_exact import persisting
-from singimpact.paper.claims.verifiers import every, same
+from singimpact.paper.claims.verifiers import every, is_zero, same
 from singimpact.paper.routes import unfolding as model
 from singimpact.paper.routes.unfolding import kappa, r, sigma, t, u
 
+slow, m, kick, w, d, h, mu, nu = sympy.symbols("lambda m c w d h mu nu", positive=True)
+BORN = (1 - d) / (2 * d), kick**2 * d / (1 - d) ** 2, sympy.Rational(2, 3), 1 / (nu - mu)
 v, s, bend, drop, rate = sympy.symbols("v s A2 dc a_c")  # A2 = |a''|, a_c = |da/dc|
 WINDOW = {sigma: (-5, 5), t: (0, 12), r: (0, 1)}  # of the universal model, in half distances
 
@@ -63,10 +65,54 @@ def _hop(stated: tuple[sympy.Expr, sympy.Expr, sympy.Expr, sympy.Expr]) -> Check
     )
 
 
+def _exponent(stated: tuple[sympy.Expr, sympy.Expr, sympy.Expr, sympy.Expr]) -> Check:
+    """(stretch, e^B, lambda, share): a return has the exponent E ln stretch, and (|ln e| + B)/(2 |ln lambda|) periods.
+
+    Of the limit of the square-root map as a non-impacting orbit passes the wall by e = w^2: an impact of the depth e d,
+    d = h^2, throws the slow part of the motion to e s, s = lambda^m c h/w, m periods later. There lambda < s <= 1, and
+    the next d is 1 - s. Above the stated lambda all returns expand. share : the slow part of a velocity of 1.
+    """
+    stretch, periods, least, share = stated
+    thrown = slow**m * kick * h / w
+    free = share * (sympy.exp(-mu * t) - sympy.exp(-nu * t))
+    motion = sympy.diff(free, t, 2) + (mu + nu) * sympy.diff(free, t) + mu * nu * free
+    slowest = slow / (2 * (1 - slow))
+    return every(
+        [
+            ("a return stretches by s/(2 d)", is_zero(sympy.diff(1 - thrown, h) / (2 * h) + thrown / (2 * h**2))),
+            ("s has the mean of 1 - d, so ln s/(2 d) has that which is stated", same(stretch, (1 - d) / (2 * d))),
+            (
+                "and lambda^(-2m) is that of e^B/e, with s in the place of 1 - d",
+                same(periods.subs(d, h**2) * (1 - h**2) ** 2, (thrown * w / slow**m) ** 2),
+            ),
+            (
+                f"s/(2 d) is least for s = lambda, d = 1 - lambda, and 1 there for lambda = {least}",
+                positive_in(slowest - 1, {slow: (least, 1)}) and slowest.subs(slow, least) == 1,
+            ),
+            (
+                "the slow part of a velocity is that of a motion that starts at 0",
+                is_zero(motion) and same(sympy.diff(free, t).subs(t, 0), 1),
+            ),
+        ],
+        "argued",
+        witness=lambda: {"stretch": str(stretch), "least": str(slowest.subs(slow, least))},
+    )
+
+
 FLIGHT = (s + 1) ** 3 * (3 - s)
 LAWS = sympy.Integer(4), sympy.Rational(8, 3), sympy.Rational(9, 8)
 
 CLAIMS = {
+    "b:grazing-exponent": Encoding(
+        BORN,
+        _exponent,
+        (
+            (2 * BORN[0], *BORN[1:]),
+            (BORN[0], BORN[1] * (1 - d), *BORN[2:]),
+            (*BORN[:2], sympy.Rational(3, 4), BORN[3]),
+            (*BORN[:3], 1 / nu),
+        ),
+    ),
     "b:onset-none": Encoding(sigma, _rises, (-sigma, v, sigma - v, sigma + v)),
     "b:onset-hop": Encoding(
         (FLIGHT, *LAWS),
