@@ -89,7 +89,7 @@ class Line(NamedTuple):
     error: Fraction
 
     def reach(self, halves: Sequence[Fraction]) -> Fraction:
-        """How far members are from the centre."""
+        """The largest distance of a member from the centre."""
         return sum((abs(slope) * half for slope, half in zip(self.slopes, halves, strict=True)), self.error)
 
 
@@ -133,12 +133,12 @@ def resting_windows(
     releases = Releases(osc, over, whole("periods", periods, 1, 1000))
     least = (high - low) / whole("pieces", pieces, 1, 10**6)
     phases = rising_zeros(releases.model((low + high) / 2))
-    found = [
+    windows = [
         RestingWindow(*ends, index, after)
         for index in range(len(phases))
         for *ends, after in _joined(_searched(releases, phases, index, (low, high), least))
     ]
-    return RestingWindows(found, (low, high), len(phases))
+    return RestingWindows(windows, (low, high), len(phases))
 
 
 def _searched(

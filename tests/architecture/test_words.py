@@ -61,7 +61,7 @@ MEANT = [
     (lambda: si.ImpactOscillator("2x", "cos(t)", 0, 1), "a product is written with its *, 2*x"),
     (lambda: si.ImpactOscillator("x", "2 cos(t)", 0, 1), "a product is written with its *, 2*cos"),
     (lambda: si.ImpactOscillator("abs(x - 1)", "cos(t)", 0, 1).impact_map(0, 1), "in place of abs(u)"),
-    (lambda: si.claims["eq:1"], "unknown claim 'eq:1': none is near; there are b:cascade-contraction"),
+    (lambda: si.claims["eq:1"], "unknown claim 'eq:1': none is near; there are b:border-order, b:cascade"),
     (lambda: si.claims["t:t11"], "the nearest known are t:t1"),
 ]
 

@@ -94,7 +94,7 @@ def _rests(stated: tuple[str, str, int, tuple[str, str]]) -> Check:
     borders : the nearest border orbits on both sides, to twelve decimals.
     """
     low, high, periods, borders = stated
-    found = resting_windows(BALL, "G", (low, high), periods=periods, pieces=PIECES)
+    windows = resting_windows(BALL, "G", (low, high), periods=periods, pieces=PIECES)
     beside = []
     for place in map(Fraction, borders):
         near = float(place - NEXT), float(place + NEXT)
@@ -103,8 +103,8 @@ def _rests(stated: tuple[str, str, int, tuple[str, str]]) -> Check:
     return every(
         [
             (
-                f"balls fly all orbits of an interval of G, which covers {float(found.share):.6g} of it",
-                found.share == 1 and {one.periods for one in found} == {periods},
+                f"balls fly all orbits of an interval of G, which covers {float(windows.share):.6g} of it",
+                windows.share == 1 and {one.periods for one in windows} == {periods},
             ),
             (
                 f"border orbits of {periods} periods are certified at G = {', '.join(map(str, values))}",
@@ -116,7 +116,7 @@ def _rests(stated: tuple[str, str, int, tuple[str, str]]) -> Check:
             ),
         ],
         "certified",
-        witness=lambda: {"windows": str(found), "borders": str(values)},
+        witness=lambda: {"windows": str(windows), "borders": str(values)},
     )
 
 

@@ -1,4 +1,4 @@
-"""What is born: at a negative swan nothing that recurs but one orbit that starts at A; at a graze an exponent."""
+"""Births: at a negative swan nothing that recurs but one orbit that starts at A; at a graze an exponent."""
 
 import sympy
 
