@@ -96,8 +96,8 @@ def _rests(stated: tuple[str, str, int, tuple[str, str]]) -> Check:
     low, high, periods, borders = stated
     windows = resting_windows(BALL, "G", (low, high), periods=periods, pieces=PIECES)
     beside = []
-    for place in map(Fraction, borders):
-        near = float(place - NEXT), float(place + NEXT)
+    for edge in map(Fraction, borders):
+        near = float(edge - NEXT), float(edge + NEXT)
         beside += border_orbits(BALL, "G", near, digits=DIGITS, periods=periods, points=3)
     values = [orbit.certified for orbit in beside]
     return every(

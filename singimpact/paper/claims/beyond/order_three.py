@@ -40,8 +40,8 @@ def _every_order(stated: tuple[int, int]) -> Check:
     earlier = rate / lift  # dt_1/dL
     changes = (T * push - speed * earlier) / (T * push) - rate * (push + T * bend - push * earlier) / (T * push) ** 2
     fading = sympy.exp(-m * x)
-    left, made = 2 * x * (1 - x), m * (1 - x) ** 2 + 2 * (1 - x)
-    below = sympy.expand((power + m) * (1 - x) ** power + left - made) == 0
+    left, integrand = 2 * x * (1 - x), m * (1 - x) ** 2 + 2 * (1 - x)
+    below = sympy.expand((power + m) * (1 - x) ** power + left - integrand) == 0
     return every(
         [
             (
@@ -59,7 +59,7 @@ def _every_order(stated: tuple[int, int]) -> Check:
             (
                 "with m = T p'/p the integral of (2 + m) (1 - x)^2 exp(-m x) over (0, 1) is below 1",
                 below
-                and is_zero(sympy.expand((sympy.diff(-((1 - x) ** 2) * fading, x) - made * fading) / fading))
+                and is_zero(sympy.expand((sympy.diff(-((1 - x) ** 2) * fading, x) - integrand * fading) / fading))
                 and positive_in(left, {x: (0, 1)}),
             ),
             (
