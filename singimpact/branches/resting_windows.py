@@ -128,17 +128,17 @@ def resting_windows(
     require_rebound(osc, "rest after chatter")
     flown = osc.period is not None and enclosable(osc)
     require(flown, "model", osc, "one with a period, whose restitution is a number below 1")
-    low, high = rational_ends("between", between, "two rational numbers low < high")
+    ends = rational_ends("between", between, "two rational numbers low < high")
     osc = with_number(osc, over)
     releases = Releases(osc, over, whole("periods", periods, 1, 1000))
-    least = (high - low) / whole("pieces", pieces, 1, 10**6)
-    phases = rising_zeros(releases.model((low + high) / 2))
+    least = (ends[1] - ends[0]) / whole("pieces", pieces, 1, 10**6)
+    phases = rising_zeros(releases.model(sum(ends) / 2))
     windows = [
-        RestingWindow(*ends, index, after)
+        RestingWindow(low, high, index, after)
         for index in range(len(phases))
-        for *ends, after in _joined(_searched(releases, phases, index, (low, high), least))
+        for low, high, after in _joined(_searched(releases, phases, index, ends, least))
     ]
-    return RestingWindows(windows, (low, high), len(phases))
+    return RestingWindows(windows, ends, len(phases))
 
 
 def _searched(

@@ -10,9 +10,9 @@ import sympy
 
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.certificates import positive_on
-from singimpact.algebra.numbers import Array, rational_near
+from singimpact.algebra.numbers import Array, constant, rational_near
 from singimpact.algebra.precision import balls_at
-from singimpact.branches.border import border_orbits
+from singimpact.branches.border import BorderOrbit, border_orbits
 from singimpact.branches.border_digits import rising_zero
 from singimpact.branches.resting_windows import Line, Lines, flown_sets, released_sets, resting_windows
 from singimpact.dynamics.long_run import rising_zeros
@@ -95,7 +95,7 @@ def _rests(stated: tuple[str, str, int, tuple[str, str]]) -> Check:
     """
     low, high, periods, borders = stated
     windows = resting_windows(BALL, "G", (low, high), periods=periods, pieces=PIECES)
-    beside = []
+    beside = list[BorderOrbit]()
     for edge in map(Fraction, borders):
         near = float(edge - NEXT), float(edge + NEXT)
         beside += border_orbits(BALL, "G", near, digits=DIGITS, periods=periods, points=3)
@@ -130,7 +130,7 @@ class _Trap(NamedTuple):
     def holds(self, lines: Lines, halves: Sequence[Fraction]) -> bool:
         """Whether a set lies in it, some periods later."""
         tau, v = lines
-        period = rational_near(BALL.period, BITS)
+        period = rational_near(constant("the period", "2*pi"), BITS)
         later = round((tau.centre - self.corner[0]) / period) * period
         return all(
             abs(p * (tau.centre - self.corner[0] - later) + q * (v.centre - self.corner[1]))
