@@ -11,25 +11,7 @@ from fractions import Fraction
 from itertools import islice
 from typing import Any
 
-from singimpact.algebra.expressions import (
-    BOUND,
-    FOLDING,
-    FUNCTIONS,
-    MINUS_ONE,
-    Call,
-    Expression,
-    Name,
-    Number,
-    Pi,
-    Root,
-    add,
-    bits_of_power,
-    multiply,
-    negate,
-    power,
-    substitute,
-    walk,
-)
+from singimpact.algebra import expressions
 from singimpact.inputs import InputError, meant, need, shown
 
 
@@ -75,7 +57,7 @@ DEFINITIONS = {
     "log2": "log(w)/log(2)",
     "log10": "log(w)/log(10)",
 }
-_LANGUAGE = f"numbers, + - * / **, pi and {' '.join(FUNCTIONS)} {' '.join(DEFINITIONS)}"
+_LANGUAGE = f"numbers, + - * / **, pi and {' '.join(expressions.FUNCTIONS)} {' '.join(DEFINITIONS)}"
 SYNONYMS = {"ln": "log", "Abs": "abs", "fabs": "abs", "absolute": "abs"} | {
     f"arc{name[1:]}": name for name in ("atan", "asin", "acos", "asinh", "acosh", "atanh")
 }
@@ -92,7 +74,7 @@ ROUGH = {"sgn": "sign", "heaviside": "Heaviside", "where": "Piecewise"} | {
 }
 
 
-def parse(text: str, names: Iterable[str] = (), what: str = "expression") -> Expression:
+def parse(text: str, names: Iterable[str] = (), what: str = "expression") -> expressions.Expression:
     """The tree of a text.
 
     Parameters
@@ -120,7 +102,7 @@ sec csc cot expm1 exp2 log1p log2 log10
     return _Parser(text, tuple(names), what).whole()
 
 
-def defined(name: str) -> Callable[[Expression], Expression] | None:
+def defined(name: str) -> Callable[[expressions.Expression], expressions.Expression] | None:
     """A function of trees by its name, its own or another; None for one that is not accepted.
 
     Examples
@@ -130,16 +112,16 @@ def defined(name: str) -> Callable[[Expression], Expression] | None:
     0.5*(exp(x) - exp(-x)) None
     """
     name = SYNONYMS.get(name, name)
-    if name in FUNCTIONS:
-        return lambda argument: Call(name, argument)
+    if name in expressions.FUNCTIONS:
+        return lambda argument: expressions.Call(name, argument)
     if name not in DEFINITIONS:
         return None
     definition = parse(DEFINITIONS[name], ("w",))
 
-    def written_out(argument: Expression) -> Expression:
-        if sum(1 for _ in islice(walk(argument), LIMITS.parts)) == LIMITS.parts:
+    def written_out(argument: expressions.Expression) -> expressions.Expression:
+        if sum(1 for _ in islice(expressions.walk(argument), LIMITS.parts)) == LIMITS.parts:
             raise InputError(f"the argument of {name} has {LIMITS.parts} parts or more")
-        return substitute(definition, {"w": argument})
+        return expressions.substitute(definition, {"w": argument})
 
     return written_out
 
@@ -186,7 +168,7 @@ class _Parser:
             return True
         return False
 
-    def whole(self) -> Expression:
+    def whole(self) -> expressions.Expression:
         if self.kind == "end":
             raise self.refusal(f"it is empty; accepted are {_LANGUAGE}")
         tree = self.sum()
@@ -208,7 +190,7 @@ class _Parser:
             return f"a product is written with its *, {shown(f'{before}*{self.token}')[1:-1]}"
         return f"{shown(self.token)} is out of place"
 
-    def sum(self) -> Expression:
+    def sum(self) -> expressions.Expression:
         self.depth += 1
         if self.depth > LIMITS.depth:
             raise self.refusal(f"it is nested deeper than {LIMITS.depth} levels")
@@ -216,28 +198,28 @@ class _Parser:
         while self.kind == "sign" and self.token in "+-":
             minus = self.token == "-"
             self.advance()
-            terms.append(negate(self.product()) if minus else self.product())
+            terms.append(expressions.negate(self.product()) if minus else self.product())
         self.depth -= 1
-        return add(*terms) if len(terms) > 1 else terms[0]
+        return expressions.add(*terms) if len(terms) > 1 else terms[0]
 
-    def product(self) -> Expression:
+    def product(self) -> expressions.Expression:
         factors = [self.signed()]
         while self.kind == "sign" and self.token in ("*", "/"):
             divide = self.token == "/"
             self.advance()
             factor = self.signed()
-            factors.append(self.raised(factor, MINUS_ONE) if divide else factor)
-        return multiply(*factors) if len(factors) > 1 else factors[0]
+            factors.append(self.raised(factor, expressions.MINUS_ONE) if divide else factor)
+        return expressions.multiply(*factors) if len(factors) > 1 else factors[0]
 
-    def signed(self) -> Expression:
+    def signed(self) -> expressions.Expression:
         minus = False
         while self.kind == "sign" and self.token in ("+", "-"):
             minus ^= self.token == "-"
             self.advance()
         tree = self.powered()
-        return negate(tree) if minus else tree
+        return expressions.negate(tree) if minus else tree
 
-    def powered(self) -> Expression:
+    def powered(self) -> expressions.Expression:
         base = self.atom()
         if not self.take("**"):
             return base
@@ -248,13 +230,13 @@ class _Parser:
         self.depth -= 1
         return self.raised(base, exponent)
 
-    def raised(self, base: Expression, exponent: Expression) -> Expression:
+    def raised(self, base: expressions.Expression, exponent: expressions.Expression) -> expressions.Expression:
         try:
             return bounded_power(base, exponent)
         except InputError as error:
             raise self.refusal(str(error)) from None
 
-    def atom(self) -> Expression:
+    def atom(self) -> expressions.Expression:
         token, kind = self.token, self.kind
         if kind == "number":
             self.advance()
@@ -269,36 +251,36 @@ class _Parser:
             return tree
         raise self.refusal(self.unexpected())
 
-    def number(self, token: str) -> Expression:
+    def number(self, token: str) -> expressions.Expression:
         exponent = re.search(r"[eE]([+-]?\d+)$", token)
         if len(token) > LIMITS.digits or (exponent and (len(exponent[1]) > 6 or abs(int(exponent[1])) > LIMITS.digits)):
             raise self.refusal(f"a number has more than {LIMITS.digits} digits")
-        return Number(Fraction(token))
+        return expressions.Number(Fraction(token))
 
-    def root(self) -> Expression:
+    def root(self) -> expressions.Expression:
         """root(function of u, low, high): the one zero between two rationals."""
         from singimpact.algebra.isolated_zeros import is_one_root
 
-        outer, self.names = self.names, (BOUND,)
+        outer, self.names = self.names, (expressions.BOUND,)
         function = self.sum()
         self.names, ends = outer, []
         while self.take(","):
             ends.append(self.sum())
-        if not self.take(")") or len(ends) != 2 or not all(isinstance(end, Number) for end in ends):
+        if not self.take(")") or len(ends) != 2 or not all(isinstance(end, expressions.Number) for end in ends):
             raise self.refusal("root takes a function of u and two rationals, root(u**2 - 2, 1, 2)")
-        low, high = (end.value for end in ends if isinstance(end, Number))
-        root_ = Root(function, low, high)
+        low, high = (end.value for end in ends if isinstance(end, expressions.Number))
+        root_ = expressions.Root(function, low, high)
         self.roots += 1
         if self.roots > LIMITS.roots:
             raise self.refusal(f"it has more than {LIMITS.roots} roots")
-        pieces = LIMITS.zeros // (self.roots**2 * sum(1 for _ in walk(function)))
+        pieces = LIMITS.zeros // (self.roots**2 * sum(1 for _ in expressions.walk(function)))
         if not low < high or not is_one_root(root_, pieces):
             raise self.refusal(
                 f"{shown(str(root_))} is not one zero: the function must change sign once between the two numbers"
             )
         return root_
 
-    def named(self, token: str) -> Expression:
+    def named(self, token: str) -> expressions.Expression:
         if token == "root" and self.take("("):
             return self.root()
         if self.kind == "sign" and self.token == "(":
@@ -316,9 +298,9 @@ class _Parser:
         if self.token == "." and token in ("np", "numpy", "math", "sympy", "sp", "cmath"):
             raise self.refusal(f"write the names of functions and numbers without {token}., as in cos(2*t)")
         if token in self.names:
-            return Name(token)
+            return expressions.Name(token)
         if token == "pi":
-            return Pi()
+            return expressions.Pi()
         raise self.refusal(unknown_name(token, self.names))
 
 
@@ -333,22 +315,25 @@ def unknown_name(token: str, names: Iterable[str]) -> str:
     return f"the symbol {shown(token)} has no value ({listed}){hint}"
 
 
-def bounded_power(base: Expression, exponent: Expression) -> Expression:
+def bounded_power(base: expressions.Expression, exponent: expressions.Expression) -> expressions.Expression:
     """base ** exponent, refused when the exact result would be huge or is a division by zero."""
-    if isinstance(exponent, Number):
+    if isinstance(exponent, expressions.Number):
         if abs(exponent.value) > LIMITS.exponent or exponent.value.denominator > LIMITS.exponent:
             raise InputError(
                 f"the exponent {shown(exponent.value)} is too large; at most {LIMITS.exponent} is accepted"
             )
-        if isinstance(base, Number) and bits_of_power(base, exponent) > FOLDING.bits:
-            raise InputError(f"a constant power has more than {FOLDING.bits} bits")
+        if (
+            isinstance(base, expressions.Number)
+            and expressions.bits_of_power(base, exponent) > expressions.FOLDING.bits
+        ):
+            raise InputError(f"a constant power has more than {expressions.FOLDING.bits} bits")
     try:
-        return power(base, exponent)
+        return expressions.power(base, exponent)
     except ZeroDivisionError:
         raise InputError("it divides by zero") from None
 
 
-def from_sympy(tree: Any, names: Iterable[str] = (), what: str = "expression") -> Expression:
+def from_sympy(tree: Any, names: Iterable[str] = (), what: str = "expression") -> expressions.Expression:
     """The tree of a sympy expression, through the same whitelist; a sympy Float means its exact binary value."""
     known = tuple(names)
     if sum(1 for _ in _first(tree, LIMITS.characters)) >= LIMITS.characters:
@@ -368,32 +353,32 @@ def _first(tree: Any, count: int) -> Iterable[Any]:
         stack.extend(part.args)
 
 
-def _convert(tree: Any, names: tuple[str, ...], depth: int) -> Expression:
+def _convert(tree: Any, names: tuple[str, ...], depth: int) -> expressions.Expression:
     kind = type(tree).__name__
     if depth > LIMITS.depth:
         raise InputError(f"it is nested deeper than {LIMITS.depth} levels")
     if tree.is_Rational:
-        return Number(Fraction(int(tree.p), int(tree.q)))
+        return expressions.Number(Fraction(int(tree.p), int(tree.q)))
     if tree.is_Float:
         need(tree.is_finite, InputError("it contains a number that is not finite"))
         sign, mantissa, exponent, _ = tree._mpf_
-        return Number((-1 if sign else 1) * Fraction(int(mantissa)) * Fraction(2) ** int(exponent))
+        return expressions.Number((-1 if sign else 1) * Fraction(int(mantissa)) * Fraction(2) ** int(exponent))
     if kind == "Pi":
-        return Pi()
+        return expressions.Pi()
     if tree.is_Symbol:
         if tree.name not in names:
             raise InputError(unknown_name(tree.name, names))
-        return Name(tree.name)
+        return expressions.Name(tree.name)
     if kind == "Exp1":
-        return Call("exp", Number(Fraction(1)))
+        return expressions.Call("exp", expressions.Number(Fraction(1)))
     parts = [_convert(argument, names, depth + 1) for argument in tree.args]
     if tree.is_Add:
-        return add(*parts)
+        return expressions.add(*parts)
     if tree.is_Mul:
-        return multiply(*parts)
+        return expressions.multiply(*parts)
     if tree.is_Pow:
-        half = isinstance(parts[1], Number) and parts[1].value == Fraction(1, 2)
-        return Call("sqrt", parts[0]) if half else bounded_power(parts[0], parts[1])
+        half = isinstance(parts[1], expressions.Number) and parts[1].value == Fraction(1, 2)
+        return expressions.Call("sqrt", parts[0]) if half else bounded_power(parts[0], parts[1])
     function = defined(kind) if len(parts) == 1 else None
     if function is None:
         rough = ROUGH.get(kind, kind) in SMOOTH

@@ -52,14 +52,11 @@ def _ball(stated: tuple[int, int]) -> Check:
         substitution(At(E * C**3 * X, {X: a}), derived)
     compared = {name: exact and _routes_agree(*numbers) for name, numbers in MODELS.items()}
     return every(
-        [
-            (f"d^2 y/ds^2 = {derived}; stated: {gravity}", exact),
-            (
-                f"v_c by this closed form and by the boundary value problem: equal rationals to order {ORDER} for "
-                f"{', '.join(compared)} models",
-                all(compared.values()),
-            ),
-        ],
+        {
+            f"d^2 y/ds^2 = {derived}; stated: {gravity}": exact,
+            f"v_c by this closed form and by the boundary value problem: equal rationals to order {ORDER} for "
+            f"{', '.join(compared)} models": all(compared.values()),
+        },
         witness=lambda: {"d^2 y/ds^2": str(derived), "stated": str(gravity)},
     )
 
@@ -112,7 +109,7 @@ def _entry(stated: tuple[int, ...]) -> Check:
         ]
         entries.append(min(degrees) - (j + 1))
     return every(
-        [(f"second derivatives of f enter v_c {entries} degrees above its leading part", tuple(entries) == stated)]
+        {f"second derivatives of f enter v_c {entries} degrees above its leading part": tuple(entries) == stated}
     )
 
 

@@ -13,13 +13,12 @@ def _below_one(stated: tuple[Any, Any]) -> Check:
     """(A, B), A < B on (0, 1): A/B is r times the ratio of the corrected bounds of q~ and p~ without M."""
     small, large = stated
     return every(
-        [
-            (
-                "A/B = r (1 + e)/(1 - e), e = (1 - r)/3 the slack of both bounds",
-                same(small / large, r * (1 + SLACK) / (1 - SLACK)),
+        {
+            "A/B = r (1 + e)/(1 - e), e = (1 - r)/3 the slack of both bounds": same(
+                small / large, r * (1 + SLACK) / (1 - SLACK)
             ),
-            ("B - A is positive on (0, 1)", positive_on(large - small, r, 0, 1)),
-        ]
+            "B - A is positive on (0, 1)": positive_on(large - small, r, 0, 1),
+        }
     )
 
 
