@@ -13,7 +13,7 @@ import click
 from singimpact import __version__
 from singimpact.cli.group import LINEAR
 from singimpact.cli.output import as_json_text, columns, emit, give, output_options
-from singimpact.inputs import InputError
+from singimpact.inputs import InputError, need
 from singimpact.store import folder, require_writable, written
 
 if TYPE_CHECKING:
@@ -258,8 +258,7 @@ def derive_command(
             raise InputError(f"{names[0]} is a section of the derivations: a series takes --order and --model alone")
         _series(_request(order, model, tau, keep), form, output)
         return
-    if tau is not None or keep:
-        raise InputError("--tau and --keep belong to --model")
+    need(tau is None and not keep, InputError("--tau and --keep belong to --model"))
     from singimpact.paper.sections.stored_sections import kept_sections, marks_of
 
     derived = kept_sections(names)

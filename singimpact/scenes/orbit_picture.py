@@ -381,8 +381,7 @@ def animate(orbit: Orbit, between: tuple[float, float] | None = None, frames: in
         raise refuse("orbit", type(orbit).__name__, "an orbit of `osc.orbit`")
     first, last = float(orbit.tau[0]), max(shown_end(orbit), orbit.end)
     begin, end = (_since(orbit), shown_end(orbit)) if between is None else map(float, interval(between))
-    if not first <= begin < end <= last:
-        raise refuse("between", between, f"two times from {first:.6g} to {last:.6g}")
+    require(first <= begin < end <= last, "between", between, f"two times from {first:.6g} to {last:.6g}")
     times = np.linspace(begin, end, whole("frames", frames, 2, 10_000))
     heights = orbit.sample(times).x
     figure = Figure(figsize=(7.2, 3.2), dpi=80, layout="constrained")
