@@ -19,6 +19,7 @@ import numpy as np
 
 from singimpact.algebra import expressions
 from singimpact.algebra.balls import Balls, as_rational
+from singimpact.algebra.expressions import Expression, Number
 from singimpact.algebra.parsing import LIMITS, bounded_power, defined, from_sympy, parse, refused_function
 from singimpact.inputs import InputError, refuse, require, require_memory, shown
 
@@ -52,7 +53,7 @@ def exact(name: str, value: Any) -> Fraction:
     raise refuse(name, value, ACCEPTED)
 
 
-def tree_of(value: Any, names: Iterable[str] = (), what: str = "expression") -> expressions.Expression:
+def tree_of(value: Any, names: Iterable[str] = (), what: str = "expression") -> Expression:
     """A tree from text, a function, a sympy object, a number or a tree already made.
 
     Examples
@@ -62,7 +63,7 @@ def tree_of(value: Any, names: Iterable[str] = (), what: str = "expression") -> 
     """
     if isinstance(value, str | Decimal):
         return parse(str(value), names, what)
-    if isinstance(value, expressions.Expression):
+    if isinstance(value, Expression):
         return value
     if str(type(value).__module__).partition(".")[0] == "sympy" and hasattr(value, "args"):
         return from_sympy(value, names, what)
@@ -70,10 +71,10 @@ def tree_of(value: Any, names: Iterable[str] = (), what: str = "expression") -> 
         return traced(value, tuple(names), what)
     if names and not isinstance(value, int | float | Fraction | np.number) and not hasattr(value, "_mpf_"):
         raise refuse(what, value, f"an expression in {', '.join(names)}: text, a function, a sympy object or a number")
-    return expressions.Number(exact(what, value))
+    return Number(exact(what, value))
 
 
-def constant(name: str, value: Any) -> expressions.Expression:
+def constant(name: str, value: Any) -> Expression:
     """A number as a constant tree; text and sympy constants are accepted.
 
     Raises
@@ -89,17 +90,17 @@ def constant(name: str, value: Any) -> expressions.Expression:
     """
     tree = tree_of(value, (), name)
     require(not expressions.names_in(tree), name, value, ACCEPTED)
-    require(isinstance(tree, expressions.Number) or _ball(tree, 64).is_finite(), name, value, ACCEPTED)
+    require(isinstance(tree, Number) or _ball(tree, 64).is_finite(), name, value, ACCEPTED)
     return tree
 
 
-def _ball(tree: expressions.Expression, bits: int) -> Any:
+def _ball(tree: Expression, bits: int) -> Any:
     return Balls(bits).evaluate(tree, {})
 
 
-def as_fraction(tree: expressions.Expression) -> Fraction | None:
+def as_fraction(tree: Expression) -> Fraction | None:
     """The rational a constant tree is, if it is written as one."""
-    return tree.value if isinstance(tree, expressions.Number) else None
+    return tree.value if isinstance(tree, Number) else None
 
 
 def rational_number(name: str, value: Any) -> Fraction:
@@ -149,7 +150,7 @@ def near_rational(name: str, value: object) -> Fraction:
     return rational_near(constant(name, value), 64)
 
 
-def rational_near(tree: expressions.Expression, bits: int) -> Fraction:
+def rational_near(tree: Expression, bits: int) -> Fraction:
     """A rational within about 2^-bits, relative, of a constant tree; the number itself where it is rational.
 
     A number below 2^-1000000 that is not written as a rational becomes 0: its digits would take seconds and gigabytes.
@@ -169,11 +170,11 @@ def rational_near(tree: expressions.Expression, bits: int) -> Fraction:
     True
     """
     match tree:
-        case expressions.Number(value):
+        case Number(value):
             return value
         case expressions.Pi():
             return _pi(bits)
-        case expressions.Product((expressions.Number(value), expressions.Pi())):
+        case expressions.Product((Number(value), expressions.Pi())):
             return value * _pi(bits)
     ball = _ball(tree, bits)
     if not ball.is_finite():  # flint puts 0 where a number is out of its range
@@ -200,7 +201,7 @@ def _pi(bits: int) -> Fraction:
     return Fraction(16 * arctan(5) - 4 * arctan(239), one)
 
 
-def as_float(tree: expressions.Expression | None) -> float:
+def as_float(tree: Expression | None) -> float:
     """The nearest double of a constant tree; nan where there is no number, such as the period of a model without one.
 
     Raises
@@ -223,21 +224,21 @@ def as_float(tree: expressions.Expression | None) -> float:
     return value
 
 
-def as_mpf(tree: expressions.Expression, context: Any) -> Any:
+def as_mpf(tree: Expression, context: Any) -> Any:
     """The value of a constant tree in an mpmath context, at that context's precision."""
     from singimpact.algebra.rings import Multiprecision
 
     return expressions.evaluate(tree, {}, Multiprecision(context))
 
 
-def sign_of(tree: expressions.Expression) -> int:
+def sign_of(tree: Expression) -> int:
     """The sign of a constant, decided by balls of growing precision; 0 only for an exact zero.
 
     Raises
     ------
     InputError : not decided with 4096 bits and not written as a rational.
     """
-    if isinstance(tree, expressions.Number):
+    if isinstance(tree, Number):
         return (tree.value > 0) - (tree.value < 0)
     if sign := _sign_of_parts(tree):
         return sign
@@ -249,18 +250,18 @@ def sign_of(tree: expressions.Expression) -> int:
     raise InputError(f"the sign of {shown(str(tree), 200)} {advice}")
 
 
-def _sign_of_parts(tree: expressions.Expression) -> int:
+def _sign_of_parts(tree: Expression) -> int:
     """The sign of a product of numbers and pi; 0 where balls must decide. It spares a session that asks for no more
     the loading of them.
     """
-    if isinstance(tree, expressions.Number):
+    if isinstance(tree, Number):
         return (tree.value > 0) - (tree.value < 0)
     if isinstance(tree, expressions.Product):
         return math.prod(_sign_of_parts(factor) for factor in tree.factors)
     return 1 if isinstance(tree, expressions.Pi) else 0
 
 
-def compare(left: expressions.Expression, right: expressions.Expression | int) -> int:
+def compare(left: Expression, right: Expression | int) -> int:
     """-1, 0 or 1 as left is less than, equal to or greater than right."""
     other = expressions.number(right) if isinstance(right, int) else right
     return 0 if left == other else sign_of(expressions.subtract(left, other))
@@ -301,12 +302,12 @@ def float_array(name: str, values: Any) -> np.ndarray[Any, np.dtype[np.float64]]
 # Operators, and the functions of numpy and of `math`, build the tree.  What depends on a value (a branch, a comparison,
 # a conversion to float) has no tree and is refused with the line of the function.
 
-OF_ONE: dict[str, Callable[[expressions.Expression], expressions.Expression]] = {
+OF_ONE: dict[str, Callable[[Expression], Expression]] = {
     "neg": expressions.negate,
     "pos": lambda tree: tree,
     "abs": lambda tree: expressions.Call("abs", tree),
 }
-OF_TWO: dict[str, Callable[[expressions.Expression, expressions.Expression], expressions.Expression]] = {
+OF_TWO: dict[str, Callable[[Expression, Expression], Expression]] = {
     "add": expressions.add,
     "sub": expressions.subtract,
     "mul": expressions.multiply,
@@ -320,14 +321,12 @@ DECIDING = ("bool", "float", "int", "index", "complex", "lt", "le", "gt", "ge", 
 class Letter:
     """A number of which only the tree is known, and how many parts it has; `OF_ONE`, `OF_TWO` are its operations."""
 
-    def __init__(self, tree: expressions.Expression, parts: int = 1) -> None:
+    def __init__(self, tree: Expression, parts: int = 1) -> None:
         self.tree, self.parts = tree, parts
         if parts > LIMITS.characters:
             raise InputError(f"its formula has more than {LIMITS.characters} parts")
 
-    def with_number(
-        self, value: object, build: Callable[[expressions.Expression, expressions.Expression], expressions.Expression]
-    ) -> "Letter":
+    def with_number(self, value: object, build: Callable[[Expression, Expression], Expression]) -> "Letter":
         """A number built of this one and another."""
         other = _letter(value)
         return Letter(build(self.tree, other.tree), self.parts + other.parts + 1)
@@ -384,7 +383,7 @@ def _copied(function: types.FunctionType) -> types.FunctionType:
     return copied
 
 
-def traced(function: Callable[..., Any], names: Sequence[str], what: str) -> expressions.Expression:
+def traced(function: Callable[..., Any], names: Sequence[str], what: str) -> Expression:
     """The tree of a function.
 
     Parameters

@@ -12,6 +12,7 @@ from itertools import islice
 from typing import Any
 
 from singimpact.algebra import expressions
+from singimpact.algebra.expressions import Expression, Number
 from singimpact.inputs import InputError, meant, need, shown
 
 
@@ -74,7 +75,7 @@ ROUGH = {"sgn": "sign", "heaviside": "Heaviside", "where": "Piecewise"} | {
 }
 
 
-def parse(text: str, names: Iterable[str] = (), what: str = "expression") -> expressions.Expression:
+def parse(text: str, names: Iterable[str] = (), what: str = "expression") -> Expression:
     """The tree of a text.
 
     Parameters
@@ -102,7 +103,7 @@ sec csc cot expm1 exp2 log1p log2 log10
     return _Parser(text, tuple(names), what).whole()
 
 
-def defined(name: str) -> Callable[[expressions.Expression], expressions.Expression] | None:
+def defined(name: str) -> Callable[[Expression], Expression] | None:
     """A function of trees by its name, its own or another; None for one that is not accepted.
 
     Examples
@@ -118,7 +119,7 @@ def defined(name: str) -> Callable[[expressions.Expression], expressions.Express
         return None
     definition = parse(DEFINITIONS[name], ("w",))
 
-    def written_out(argument: expressions.Expression) -> expressions.Expression:
+    def written_out(argument: Expression) -> Expression:
         if sum(1 for _ in islice(expressions.walk(argument), LIMITS.parts)) == LIMITS.parts:
             raise InputError(f"the argument of {name} has {LIMITS.parts} parts or more")
         return expressions.substitute(definition, {"w": argument})
@@ -168,7 +169,7 @@ class _Parser:
             return True
         return False
 
-    def whole(self) -> expressions.Expression:
+    def whole(self) -> Expression:
         if self.kind == "end":
             raise self.refusal(f"it is empty; accepted are {_LANGUAGE}")
         tree = self.sum()
@@ -190,7 +191,7 @@ class _Parser:
             return f"a product is written with its *, {shown(f'{before}*{self.token}')[1:-1]}"
         return f"{shown(self.token)} is out of place"
 
-    def sum(self) -> expressions.Expression:
+    def sum(self) -> Expression:
         self.depth += 1
         if self.depth > LIMITS.depth:
             raise self.refusal(f"it is nested deeper than {LIMITS.depth} levels")
@@ -202,7 +203,7 @@ class _Parser:
         self.depth -= 1
         return expressions.add(*terms) if len(terms) > 1 else terms[0]
 
-    def product(self) -> expressions.Expression:
+    def product(self) -> Expression:
         factors = [self.signed()]
         while self.kind == "sign" and self.token in ("*", "/"):
             divide = self.token == "/"
@@ -211,7 +212,7 @@ class _Parser:
             factors.append(self.raised(factor, expressions.MINUS_ONE) if divide else factor)
         return expressions.multiply(*factors) if len(factors) > 1 else factors[0]
 
-    def signed(self) -> expressions.Expression:
+    def signed(self) -> Expression:
         minus = False
         while self.kind == "sign" and self.token in ("+", "-"):
             minus ^= self.token == "-"
@@ -219,7 +220,7 @@ class _Parser:
         tree = self.powered()
         return expressions.negate(tree) if minus else tree
 
-    def powered(self) -> expressions.Expression:
+    def powered(self) -> Expression:
         base = self.atom()
         if not self.take("**"):
             return base
@@ -230,13 +231,13 @@ class _Parser:
         self.depth -= 1
         return self.raised(base, exponent)
 
-    def raised(self, base: expressions.Expression, exponent: expressions.Expression) -> expressions.Expression:
+    def raised(self, base: Expression, exponent: Expression) -> Expression:
         try:
             return bounded_power(base, exponent)
         except InputError as error:
             raise self.refusal(str(error)) from None
 
-    def atom(self) -> expressions.Expression:
+    def atom(self) -> Expression:
         token, kind = self.token, self.kind
         if kind == "number":
             self.advance()
@@ -251,13 +252,13 @@ class _Parser:
             return tree
         raise self.refusal(self.unexpected())
 
-    def number(self, token: str) -> expressions.Expression:
+    def number(self, token: str) -> Expression:
         exponent = re.search(r"[eE]([+-]?\d+)$", token)
         if len(token) > LIMITS.digits or (exponent and (len(exponent[1]) > 6 or abs(int(exponent[1])) > LIMITS.digits)):
             raise self.refusal(f"a number has more than {LIMITS.digits} digits")
-        return expressions.Number(Fraction(token))
+        return Number(Fraction(token))
 
-    def root(self) -> expressions.Expression:
+    def root(self) -> Expression:
         """root(function of u, low, high): the one zero between two rationals."""
         from singimpact.algebra.isolated_zeros import is_one_root
 
@@ -266,9 +267,9 @@ class _Parser:
         self.names, ends = outer, []
         while self.take(","):
             ends.append(self.sum())
-        if not self.take(")") or len(ends) != 2 or not all(isinstance(end, expressions.Number) for end in ends):
+        if not self.take(")") or len(ends) != 2 or not all(isinstance(end, Number) for end in ends):
             raise self.refusal("root takes a function of u and two rationals, root(u**2 - 2, 1, 2)")
-        low, high = (end.value for end in ends if isinstance(end, expressions.Number))
+        low, high = (end.value for end in ends if isinstance(end, Number))
         root_ = expressions.Root(function, low, high)
         self.roots += 1
         if self.roots > LIMITS.roots:
@@ -280,7 +281,7 @@ class _Parser:
             )
         return root_
 
-    def named(self, token: str) -> expressions.Expression:
+    def named(self, token: str) -> Expression:
         if token == "root" and self.take("("):
             return self.root()
         if self.kind == "sign" and self.token == "(":
@@ -315,17 +316,14 @@ def unknown_name(token: str, names: Iterable[str]) -> str:
     return f"the symbol {shown(token)} has no value ({listed}){hint}"
 
 
-def bounded_power(base: expressions.Expression, exponent: expressions.Expression) -> expressions.Expression:
+def bounded_power(base: Expression, exponent: Expression) -> Expression:
     """base ** exponent, refused when the exact result would be huge or is a division by zero."""
-    if isinstance(exponent, expressions.Number):
+    if isinstance(exponent, Number):
         if abs(exponent.value) > LIMITS.exponent or exponent.value.denominator > LIMITS.exponent:
             raise InputError(
                 f"the exponent {shown(exponent.value)} is too large; at most {LIMITS.exponent} is accepted"
             )
-        if (
-            isinstance(base, expressions.Number)
-            and expressions.bits_of_power(base, exponent) > expressions.FOLDING.bits
-        ):
+        if isinstance(base, Number) and expressions.bits_of_power(base, exponent) > expressions.FOLDING.bits:
             raise InputError(f"a constant power has more than {expressions.FOLDING.bits} bits")
     try:
         return expressions.power(base, exponent)
@@ -333,7 +331,7 @@ def bounded_power(base: expressions.Expression, exponent: expressions.Expression
         raise InputError("it divides by zero") from None
 
 
-def from_sympy(tree: Any, names: Iterable[str] = (), what: str = "expression") -> expressions.Expression:
+def from_sympy(tree: Any, names: Iterable[str] = (), what: str = "expression") -> Expression:
     """The tree of a sympy expression, through the same whitelist; a sympy Float means its exact binary value."""
     known = tuple(names)
     if sum(1 for _ in _first(tree, LIMITS.characters)) >= LIMITS.characters:
@@ -353,16 +351,16 @@ def _first(tree: Any, count: int) -> Iterable[Any]:
         stack.extend(part.args)
 
 
-def _convert(tree: Any, names: tuple[str, ...], depth: int) -> expressions.Expression:
+def _convert(tree: Any, names: tuple[str, ...], depth: int) -> Expression:
     kind = type(tree).__name__
     if depth > LIMITS.depth:
         raise InputError(f"it is nested deeper than {LIMITS.depth} levels")
     if tree.is_Rational:
-        return expressions.Number(Fraction(int(tree.p), int(tree.q)))
+        return Number(Fraction(int(tree.p), int(tree.q)))
     if tree.is_Float:
         need(tree.is_finite, InputError("it contains a number that is not finite"))
         sign, mantissa, exponent, _ = tree._mpf_
-        return expressions.Number((-1 if sign else 1) * Fraction(int(mantissa)) * Fraction(2) ** int(exponent))
+        return Number((-1 if sign else 1) * Fraction(int(mantissa)) * Fraction(2) ** int(exponent))
     if kind == "Pi":
         return expressions.Pi()
     if tree.is_Symbol:
@@ -370,14 +368,14 @@ def _convert(tree: Any, names: tuple[str, ...], depth: int) -> expressions.Expre
             raise InputError(unknown_name(tree.name, names))
         return expressions.Name(tree.name)
     if kind == "Exp1":
-        return expressions.Call("exp", expressions.Number(Fraction(1)))
+        return expressions.Call("exp", Number(Fraction(1)))
     parts = [_convert(argument, names, depth + 1) for argument in tree.args]
     if tree.is_Add:
         return expressions.add(*parts)
     if tree.is_Mul:
         return expressions.multiply(*parts)
     if tree.is_Pow:
-        half = isinstance(parts[1], expressions.Number) and parts[1].value == Fraction(1, 2)
+        half = isinstance(parts[1], Number) and parts[1].value == Fraction(1, 2)
         return expressions.Call("sqrt", parts[0]) if half else bounded_power(parts[0], parts[1])
     function = defined(kind) if len(parts) == 1 else None
     if function is None:

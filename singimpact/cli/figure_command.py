@@ -7,6 +7,7 @@ from typing import Any
 
 import click
 
+from singimpact import paper
 from singimpact.cli.output import PICTURES, as_json_text, save_once
 from singimpact.inputs import refuse, require
 from singimpact.paper.figures import ACCEPTED, BEYOND, FIGURES, kept_picture
@@ -60,10 +61,8 @@ def figure_command(which: str, output: str, kind: str, serif: bool, dark: bool, 
 
 
 def _made(number: int | str, serif: bool, dark: bool) -> tuple[Any, Any]:
-    from singimpact.paper.figures.figure_rendering import drawn
-
     picture = kept_picture(number)
-    return drawn(picture, serif, dark), [picture.title, list(picture.claims)]
+    return paper.drawn(picture, serif, dark), [picture.title, list(picture.claims)]
 
 
 def _targets(output: str, numbers: list[int | str], kind: str) -> list[Path]:

@@ -5,6 +5,7 @@ from typing import Any
 
 import click
 
+import singimpact as si
 from singimpact.cli.model_options import model_options, take_model, wall_option
 from singimpact.cli.output import (
     PICTURES,
@@ -216,9 +217,7 @@ def threshold_command(
     With two walls the status is other_wall where a flight meets the other one from a lower velocity on, which is given.
     """
     osc = take_model(options)
-    from singimpact.dynamics.threshold import threshold
-
-    limit = threshold(osc.seen_from(wall), tau, digits=digits, impacts=impacts)
+    limit = si.threshold(osc.seen_from(wall), tau, digits=digits, impacts=impacts)
     status = Status(int(limit.status))
     enclosure = limit.certified.as_dict() if limit.certified else {}
     speed, error = number_text(limit.v, digits), float(limit.error)
@@ -246,9 +245,7 @@ def lyapunov_command(
     An orbit that comes to rest again and again is superstable: its exponents are -inf.
     """
     osc = take_model(options)
-    from singimpact.dynamics.lyapunov import lyapunov
-
-    result = lyapunov(osc, tau, v, impacts, transient=transient)
+    result = si.lyapunov(osc, tau, v, impacts, transient=transient)
     status = Status(int(result.status))
     values = result.as_dict()
     numbers = {"exponents": result.exponents, "error": result.error, "per impact": result.per_impact}

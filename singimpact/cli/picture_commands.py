@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeGuard
 
 import click
 
-from singimpact import cache
+from singimpact import cache, scenes, surface
 from singimpact.cli.model_options import model_options, take_model, wall_option
 from singimpact.cli.output import as_json_text, columns, emit, give, kept_at, output_options, picture_option, save
 from singimpact.inputs import InputError
@@ -32,10 +32,8 @@ def scene_command(file: str, output: str, as_json: bool) -> None:
     outline, discontinuities, gamma, stable-manifolds, foliation, orbits. Of a model with two walls the file names one,
     wall = "upper". What is computed, what it took and what came from the cache is printed.
     """
-    from singimpact.scenes.scene import DPI, Scene
-
-    scene = Scene.read(file)
-    save(scene.draw().figure, output, dpi=DPI)
+    scene = scenes.Scene.read(file)
+    save(scene.draw().figure, output, dpi=scenes.DPI)
     report = {"output": str(Path(output)), **scene.report()}
     rows = [[name, str(report["curves"][name]), f"{time:.3f}"] for name, time in report["seconds_by_layer"].items()]
     table = columns(["layer", "curves", "seconds"], rows) if rows else "no layers"
@@ -91,10 +89,9 @@ def classify_command(
     if orbits is not None and over is None:
         raise InputError("--orbits needs the number that is varied: --over NAME --between LOW HIGH")
     from singimpact.studies import interval
-    from singimpact.surface.classification import classify
 
     swans_between = interval(between) if between is not None and over in (None, "clearance") else None
-    points = classify(oscillator.seen_from(wall), window_tau, window_t, swans_between)
+    points = surface.classify(oscillator.seen_from(wall), window_tau, window_t, swans_between)
     changes = None if over is None else _transitions(oscillator, wall, over, between, points.t, orbits)
     values = {"model": oscillator.to_dict(), **_as_listed(points, over, changes)}
     give(values, _text(points, over, changes), as_json, output)
@@ -103,9 +100,7 @@ def classify_command(
 def _transitions(oscillator: Any, wall: str | None, over: str, between: Any, t: Any, orbits: int | None) -> Transitions:
     """Without orbits nothing of branches is loaded, which takes 0.2 s."""
     if orbits is None:
-        from singimpact.surface.outline_transitions import at_wall
-
-        return at_wall(oscillator, wall, over, between, t)
+        return surface.at_wall(oscillator, wall, over, between, t)
     from singimpact.branches.transitions import transitions as with_orbits
 
     return with_orbits(oscillator, over, between, t, orbits=orbits, wall=wall)
@@ -207,18 +202,14 @@ def explore_command(
     stored = kept_at(("explore", oscillator, between, points), ("contourpy",))
     page = cache.recall(stored)
     if page is None:
-        from singimpact.scenes.explore import explore_page
-
-        page = explore_page(_film(oscillator, between, points)).encode()
+        page = scenes.explore_page(_film(oscillator, between, points)).encode()
         cache.keep(stored, page)
     _show(page.decode(), file)
 
 
 def _film(oscillator: Any, between: tuple[str, str] | None, points: int) -> ClearanceFilm:
-    from singimpact.scenes.clearance_frames import clearance_film
-
     with ProgressLine() as line:
-        return clearance_film(oscillator, between, points, line.show)
+        return scenes.clearance_film(oscillator, between, points, line.show)
 
 
 def _place(html: str | None, output: str | None) -> str | None:

@@ -10,6 +10,7 @@ from singimpact.documents.document_steps import (
     claims_of as claims_of,
     compiled as compiled,
     equations_of as equations_of,
+    require_latex as require_latex,
 )
 from singimpact.documents.rendering import (
     PAGE as PAGE,
@@ -21,4 +22,10 @@ from singimpact.documents.rendering import (
     latex_text as latex_text,
     lines_of as lines_of,
     width as width,
+)
+from singimpact.documents.series_documents import (
+    SeriesRequest as SeriesRequest,
+    series_formulas as series_formulas,
+    series_section as series_section,
+    series_text as series_text,
 )

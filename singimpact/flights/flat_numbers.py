@@ -15,6 +15,7 @@ import numpy as np
 
 from singimpact.algebra import expressions
 from singimpact.algebra.balls import Balls, as_rational
+from singimpact.algebra.expressions import Expression
 from singimpact.algebra.numbers import Array, as_float, rational_near
 from singimpact.codegen.scalar import scalar
 from singimpact.codegen.taylor_recurrence import Recurrence
@@ -114,7 +115,7 @@ def _each(argument: Twofold, work: Callable[[Balls, Any], Any]) -> Twofold:
     return Twofold(result[..., 0][()], result[..., 1][()])
 
 
-def value_of(tree: expressions.Expression, numbers: Mapping[str, Twofold]) -> Twofold:
+def value_of(tree: Expression, numbers: Mapping[str, Twofold]) -> Twofold:
     """A tree of constants and letters; without letters the doubles nearest to it, inf or nan where there is none."""
     if not expressions.names_in(tree):
         high = as_float(tree)
@@ -192,21 +193,21 @@ class Numbers:
         changes = {name: float(values[index]) for name, values in self.over.items()}
         return self.osc.replace(**changes) if changes else self.osc
 
-    def value(self, tree: expressions.Expression) -> Twofold:
+    def value(self, tree: Expression) -> Twofold:
         """A tree of constants and letters."""
         return value_of(expressions.substitute(tree, self._kept), self._values)
 
-    def column(self, tree: expressions.Expression) -> Array:
+    def column(self, tree: Expression) -> Array:
         """The nearest doubles to a tree, one for each member."""
         return np.broadcast_to(self.value(tree).high, self.size)
 
-    def place(self, above: int) -> expressions.Expression:
+    def place(self, above: int) -> Expression:
         """The clearance, or minus the upper wall: the clearance of the model with x -> -x."""
         name = UPPER[0] if above else CLEARANCE
         tree = expressions.Name(name) if name in self.letters else getattr(self.osc, name)
         return expressions.negate(tree) if above else tree
 
-    def law(self, above: int) -> tuple[str, tuple[expressions.Expression, ...]]:
+    def law(self, above: int) -> tuple[str, tuple[Expression, ...]]:
         """The text of a law rho, empty for a constant, and its constants."""
         side, name = self.sides[above], UPPER[1] if above and UPPER[1] in self.osc.to_dict() else RESTITUTION
         if expressions.names_in(side.restitution):

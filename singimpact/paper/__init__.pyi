@@ -1,6 +1,6 @@
 """Names that `paper` hands on, with their homes: `__init__.py` loads each from here when it is used."""
 
-from singimpact.paper.claims import CLAIMS as CLAIMS, INDEX as INDEX, run as run, select as select
+from singimpact.paper.claims import BEYOND as BEYOND, CLAIMS as CLAIMS, INDEX as INDEX, run as run, select as select
 from singimpact.paper.claims.claim import (
     IN_MODEL as IN_MODEL,
     KINDS as KINDS,
@@ -21,8 +21,10 @@ from singimpact.paper.claims.engine import imported_by as imported_by, keep as k
 from singimpact.paper.claims.index import (
     COLOURS as COLOURS,
     as_svg as as_svg,
+    as_text as as_text,
     claims_in as claims_in,
     colour_of as colour_of,
+    dependants as dependants,
 )
 from singimpact.paper.claims.sections.section4_trials import next_sigma as next_sigma
 from singimpact.paper.claims.sections.section6_exact import (

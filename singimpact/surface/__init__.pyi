@@ -2,10 +2,14 @@
 
 from singimpact.surface.boxes_from_rest import FlightFromRest as FlightFromRest, Tangencies as Tangencies
 from singimpact.surface.classification import classify as classify
-from singimpact.surface.curve import Curve as Curve, Window as Window
+from singimpact.surface.curve import Curve as Curve, Window as Window, window_ends as window_ends
 from singimpact.surface.followed_rests import FollowedRests as FollowedRests
 from singimpact.surface.impact_surface import ImpactSurface as ImpactSurface
-from singimpact.surface.outline_transitions import Transitions as Transitions, transitions as transitions
+from singimpact.surface.outline_transitions import (
+    Transitions as Transitions,
+    at_wall as at_wall,
+    transitions as transitions,
+)
 from singimpact.surface.proved_touches import (
     EnclosedTouches as EnclosedTouches,
     RestFlight as RestFlight,
