@@ -47,7 +47,12 @@ def map_command(
     Numbers may be expressions such as pi/2.8.
     """
     oscillator = take_model(options)
-    states = _paired(taus, vs)
+    count = max(len(taus), len(vs))
+    if min(len(taus), len(vs)) not in (1, count):
+        raise InputError(
+            f"{len(taus)} --tau and {len(vs)} --v do not pair: give one of each, or as many, or one of one kind"
+        )
+    states = list(zip(taus * (count // len(taus)), vs * (count // len(vs)), strict=True))
     keywords: dict[str, Any] = {"digits": digits, "horizon": horizon, "wall": wall}
     step = oscillator.impact_map(
         [tau for tau, _ in states], [v for _, v in states], **{key: value for key, value in keywords.items() if value}
@@ -67,15 +72,6 @@ def map_command(
         if walls is not None:
             steps[at]["wall"] = walls[at]
     give({"model": oscillator.to_dict(), "steps": steps}, _steps_table(states, rows, walls), as_json, output)
-
-
-def _paired(taus: tuple[str, ...], vs: tuple[str, ...]) -> list[tuple[str, str]]:
-    count = max(len(taus), len(vs))
-    if min(len(taus), len(vs)) not in (1, count):
-        raise InputError(
-            f"{len(taus)} --tau and {len(vs)} --v do not pair: give one of each, or as many, or one of one kind"
-        )
-    return list(zip(taus * (count // len(taus)), vs * (count // len(vs)), strict=True))
 
 
 def _steps_table(states: list[tuple[str, str]], rows: list[list[Any]], walls: list[str] | None) -> str:

@@ -229,7 +229,8 @@ def figure_B8() -> Picture:
 def _rows(model: Oscillator, rows: tuple[Row, ...]) -> tuple[list[Panel], dict[str, float]]:
     panels, facts = list[Panel](), dict[str, float]()
     for row in rows:
-        transition = _transition(model, row)
+        ends, rests = (row.value - 1e-4, row.value + 1e-4), (-row.reach, row.reach)
+        (transition,) = transitions(model, "clearance", ends, rests, row.kind).visible
         facts[row.title] = transition.value
         launch = transition.launch or (transition.rests[0], 0.0)
         tau = launch[0] + row.tau[0], launch[0] + row.tau[1]
@@ -239,12 +240,6 @@ def _rows(model: Oscillator, rows: tuple[Row, ...]) -> tuple[list[Panel], dict[s
         facts |= {f"{row.title} {sign}": float(_ends(surface, tau)) for surface, _, sign in surfaces}
         panels += _drawn(row, launch, tau, surfaces)
     return panels, facts
-
-
-def _transition(model: Oscillator, row: Row) -> Transition:
-    ends, rests = (row.value - 1e-4, row.value + 1e-4), (-row.reach, row.reach)
-    (found,) = transitions(model, "clearance", ends, rests, row.kind).visible
-    return found
 
 
 def _surface(model: Oscillator, clearance: float, tau: tuple[float, float], row: Row) -> ImpactSurface:

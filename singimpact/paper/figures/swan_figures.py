@@ -304,7 +304,8 @@ def figure_16() -> Picture:
     bottom = arc(ring(swan, "P"), swan.reset["C"], swan.reset["B"], swan.projected["D"])
     left = np.array([[swan.A - 3 * size, 0.0], [swan.A, 0.0]])
     between, right = np.array([[swan.A, 0.0], [swan.B, 0.0]]), np.array([[swan.B, 0.0], [swan.B + 3 * size, 0.0]])
-    onto = _landed_right(4 * size)
+    B = negative().B
+    onto = np.array([[B, 0.0], [B + 0.75 * (4 * size), 0.0]])
     words = {
         "1": "1, 5: on $\\Pi_0$ outside $AB$, at rest",
         "2": r"2: lower edge of the cut $\delta$, and its image",
@@ -351,11 +352,6 @@ def figure_16() -> Picture:
         ),
     ]
     return picture_of(16, str(model), panels)
-
-
-def _landed_right(length: float) -> Array:
-    B = negative().B
-    return np.array([[B, 0.0], [B + 0.75 * length, 0.0]])
 
 
 def figure_17() -> Picture:

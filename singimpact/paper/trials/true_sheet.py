@@ -216,16 +216,12 @@ def measured(series: Sheet, flow: true_orbits.Flow, quantity: str, steps: list[A
         sigma, t = h * RAY[0].numerator, h * RAY[1].numerator / RAY[1].denominator
         v = _numeric(series.v, sigma, t)
         if quantity == "phi":
-            v = _true_launch(flow, sigma, v, t)
+            # The launch velocity whose flight is back after t, by the secant method from the truncated one
+            v = secant(lambda speed: flow(sigma, speed, t)[0], v, v * (1 + v * 0 + 1e-6))
             misses.append(abs(flow(sigma, v, t)[1] - _numeric(series.xdot, sigma, t)))
         else:
             misses.append(abs(flow(sigma, v, t)[0]))
     return float(np.log(float(misses[-2] / misses[-1])) / np.log(float(steps[-2] / steps[-1])))
-
-
-def _true_launch(flow: true_orbits.Flow, sigma: Any, v: Any, t: Any) -> Any:
-    """The launch velocity whose flight is back after t, by the secant method from the truncated one."""
-    return secant(lambda speed: flow(sigma, speed, t)[0], v, v * (1 + v * 0 + 1e-6))
 
 
 @lru_cache(maxsize=16)
