@@ -1,6 +1,12 @@
 """Names that `algebra` hands on, with their homes: `__init__.py` loads each from here when it is used."""
 
-from singimpact.algebra.balls import Balls as Balls, Zero as Zero, as_rational as as_rational, ball_of as ball_of
+from singimpact.algebra.balls import (
+    BITS_A_DIGIT as BITS_A_DIGIT,
+    Balls as Balls,
+    Zero as Zero,
+    as_rational as as_rational,
+    ball_of as ball_of,
+)
 from singimpact.algebra.certificates import (
     collected as collected,
     definite as definite,
@@ -12,13 +18,20 @@ from singimpact.algebra.certificates import (
     value_at as value_at,
 )
 from singimpact.algebra.certified import Certified as Certified, from_ball as from_ball, from_ends as from_ends
-from singimpact.algebra.derivations import At as At, substitution as substitution
+from singimpact.algebra.derivations import At as At, motion as motion, substitution as substitution
+from singimpact.algebra.derivatives import derivative as derivative
 from singimpact.algebra.expressions import (
     FOLDING as FOLDING,
+    Expression as Expression,
     Number as Number,
     Root as Root,
     evaluate as evaluate,
     function_of as function_of,
+    names_in as names_in,
+    negate as negate,
+    number as number,
+    substitute as substitute,
+    subtract as subtract,
     walk as walk,
 )
 from singimpact.algebra.gathering import Remembered as Remembered, left_behind as left_behind
@@ -36,6 +49,7 @@ from singimpact.algebra.numbers import (
     EPSILON as EPSILON,
     Array as Array,
     as_float as as_float,
+    as_fraction as as_fraction,
     as_mpf as as_mpf,
     compare as compare,
     constant as constant,
@@ -57,5 +71,6 @@ from singimpact.algebra.rings import (
     SymbolRing as SymbolRing,
     to_sympy as to_sympy,
 )
+from singimpact.algebra.solving import halved as halved, secant as secant
 from singimpact.algebra.taylor import NotSmooth as NotSmooth
 from singimpact.algebra.univariate import precision_of as precision_of, real_roots as real_roots

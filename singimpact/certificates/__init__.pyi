@@ -3,7 +3,7 @@
 from singimpact.certificates.certificate import CHECKER as CHECKER, Certificate as Certificate
 from singimpact.certificates.checker import KINDS as KINDS, check as check
 from singimpact.certificates.checker.chatter_limit import rest as rest
-from singimpact.certificates.checker.files import STATEMENTS as STATEMENTS, TERMS as TERMS
+from singimpact.certificates.checker.files import STATEMENTS as STATEMENTS, TERMS as TERMS, answered as answered
 from singimpact.certificates.checker.formulas import Formula as Formula, require_period as require_period
 from singimpact.certificates.checker.gravity import Gravity as Gravity
 from singimpact.certificates.checker.horseshoe import Set as Set, derivative as derivative

@@ -40,6 +40,8 @@ if TYPE_CHECKING:
     from singimpact.branches.event_curve import EventCurve
     from singimpact.branches.events import Event
     from singimpact.branches.orbits import PeriodicOrbit
+    from singimpact.certificates.certificate import Certificate
+    from singimpact.impact_oscillator import ImpactOscillator
 
 
 @click.command()
@@ -393,7 +395,7 @@ def _gamma(files: tuple[str, ...], tau: str | None, options: dict[str, Any]) -> 
     emit(certificate.text.rstrip("\n"), options["output"])
 
 
-def _made(model: Any, kind: str, near: State, options: dict[str, Any]) -> Any:
+def _made(model: ImpactOscillator, kind: str, near: State, options: dict[str, Any]) -> Certificate:
     digits = options["digits"]
     if kind == "":
         return si.certify(model.impact_map(*(near or ()), digits=digits))
@@ -411,21 +413,23 @@ def _made(model: Any, kind: str, near: State, options: dict[str, Any]) -> Any:
     return si.certify(crossings[0].horseshoes("restitution", between) if between else crossings[0].horseshoe())
 
 
-def _border(model: Any, given: tuple[str, float, float], digits: int) -> Any:
+def _border(model: ImpactOscillator, given: tuple[str, float, float], digits: int) -> BorderOrbit:
     over, low, high = given
     found = si.border_orbits(model, over=over, between=(low, high), digits=digits)
     need(found, InputError(f"--border {over} {low:g} {high:g}: no border orbit is found there"))
     return found[0]
 
 
-def _event(orbit: Any, kind: str, over: str, low: float, high: float) -> Any:
+def _event(orbit: PeriodicOrbit, kind: str, over: str, low: float, high: float) -> Event:
     """The first event of a kind, of visible orbits of a branch."""
     found = [each for each in si.branch(orbit, over, (low, high)).events if each.kind == kind and each.orbit.visible]
     need(found, InputError(f"--event {kind} {over} {low:g} {high:g}: no {kind} of visible orbits is found there"))
     return found[0]
 
 
-def _orbit(model: Any, kind: str, counts: tuple[int, int], near: State, saddle: bool = False) -> Any:
+def _orbit(
+    model: ImpactOscillator, kind: str, counts: tuple[int, int], near: State, saddle: bool = False
+) -> PeriodicOrbit:
     orbits = [each for each in model.periodic(*counts, start=near) if not (saddle and each.stable)]
     if len(orbits) != 1:
         kinds = "saddles" if saddle else "orbits"

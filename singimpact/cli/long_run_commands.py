@@ -74,7 +74,7 @@ def sweep_command(
     give({"model": oscillator.to_dict(), "impacts": impacts, "cases": cases}, text, as_json, output)
 
 
-def last_state(fields: dict[str, Any], over: str, tau: str, v: str, impacts: int, value: float) -> Any:
+def last_state(fields: dict[str, Any], over: str, tau: str, v: str, impacts: int, value: float) -> algebra.Array:
     """tau, v and status after the last impact. A module-level function, so that it can be pickled."""
     import numpy as np
 

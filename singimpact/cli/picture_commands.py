@@ -30,6 +30,7 @@ from singimpact.store import folder, require_writable, write_text
 
 if TYPE_CHECKING:
     from singimpact.branches.transitions import Interval, OrbitTransitions
+    from singimpact.impact_oscillator import ImpactOscillator
     from singimpact.scenes.clearance_frames import ClearanceFilm
     from singimpact.surface.classification import Classification
     from singimpact.surface.outline_transitions import Transitions
@@ -111,7 +112,14 @@ def classify_command(
     give(values, _text(points, over, changes), as_json, output)
 
 
-def _transitions(oscillator: Any, wall: str | None, over: str, between: Any, t: Any, orbits: int | None) -> Transitions:
+def _transitions(
+    oscillator: ImpactOscillator,
+    wall: str | None,
+    over: str,
+    between: tuple[str, str],
+    t: tuple[str, str] | None,
+    orbits: int | None,
+) -> Transitions:
     """Without orbits nothing of branches is loaded, which takes 0.2 s."""
     if orbits is None:
         return surface.at_wall(oscillator, wall, over, between, t)
@@ -221,7 +229,7 @@ def explore_command(
     _show(page.decode(), file)
 
 
-def _film(oscillator: Any, between: tuple[str, str] | None, points: int) -> ClearanceFilm:
+def _film(oscillator: ImpactOscillator, between: tuple[str, str] | None, points: int) -> ClearanceFilm:
     with ProgressLine() as line:
         return scenes.clearance_film(oscillator, between, points, line.show)
 

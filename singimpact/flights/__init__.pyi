@@ -30,7 +30,12 @@ from singimpact.flights.enclosures.timed_flight import timed_flight as timed_fli
 from singimpact.flights.enclosures.tube import centre as centre
 from singimpact.flights.family import exponential as exponential
 from singimpact.flights.flight_path import path as path
-from singimpact.flights.horizons import Allowance as Allowance, steps_of as steps_of
+from singimpact.flights.horizons import (
+    Allowance as Allowance,
+    horizon_of as horizon_of,
+    reach_of as reach_of,
+    steps_of as steps_of,
+)
 from singimpact.flights.impact_map import first_hit as first_hit
 from singimpact.flights.in_digits import proof as proof
 from singimpact.flights.interpreted import listed as listed
@@ -58,9 +63,10 @@ from singimpact.flights.kernels.layout import (
     scratch_of as scratch_of,
 )
 from singimpact.flights.kernels.roots import first_root as first_root
-from singimpact.flights.kernels.state import TIME_BY_V as TIME_BY_V, Search as Search, Work as Work
+from singimpact.flights.kernels.state import ACROSS as ACROSS, TIME_BY_V as TIME_BY_V, Search as Search, Work as Work
+from singimpact.flights.limits import LIMITS as LIMITS, degree_for as degree_for
 from singimpact.flights.machine import Machine as Machine, machine_of as machine_of
-from singimpact.flights.model_numbers import recurrence_of as recurrence_of
+from singimpact.flights.model_numbers import numbers_of_flow as numbers_of_flow, recurrence_of as recurrence_of
 from singimpact.flights.no_return.barrier import (
     SEARCH as SEARCH,
     fastest_kept as fastest_kept,

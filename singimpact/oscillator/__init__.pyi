@@ -6,6 +6,9 @@ from singimpact.oscillator.model import (
     Oscillator as Oscillator,
     fields_of as fields_of,
     read_fields as read_fields,
+    require_model as require_model,
+    require_rebound as require_rebound,
 )
 from singimpact.oscillator.moving_number import value_of as value_of, with_number as with_number
+from singimpact.oscillator.rebound import rho_of as rho_of
 from singimpact.oscillator.wall_acceleration import acceleration as acceleration

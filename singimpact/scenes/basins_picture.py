@@ -8,9 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from singimpact.branches.transitions import BothSides
-from singimpact.dynamics.basins_of_attraction import Basins, ClassGrid
-from singimpact.dynamics.basins_over import BasinsOver
-from singimpact.dynamics.regions import Regions
+from singimpact.dynamics import Basins, BasinsOver, ClassGrid, Regions
 from singimpact.inputs import require
 from singimpact.oscillator.moving_number import value_of, with_number
 from singimpact.scenes import style

@@ -10,31 +10,26 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from singimpact.algebra.numbers import Array, as_float
-from singimpact.branches.border import BorderOrbit
-from singimpact.branches.branch import Branch
-from singimpact.branches.enclosed_crossing import EnclosedCrossing
-from singimpact.branches.event_curve import EventCurve
-from singimpact.branches.homoclinic import Crossings
-from singimpact.branches.horseshoe import CrossedSet, Horseshoe
-from singimpact.branches.manifold import Manifold
-from singimpact.branches.orbits import PeriodicOrbit
-from singimpact.branches.transitions import BothSides
-from singimpact.dynamics.basins_of_attraction import Basins
-from singimpact.dynamics.basins_over import BasinsOver
-from singimpact.dynamics.bifurcation_diagram import Bifurcation
-from singimpact.dynamics.fit import Fit
-from singimpact.dynamics.invariant_arcs import model_step
-from singimpact.dynamics.orbit import Orbit, Section
-from singimpact.dynamics.regions import Regions
-from singimpact.dynamics.release_map import ReleaseMap
+from singimpact.branches import (
+    BorderOrbit,
+    BothSides,
+    Branch,
+    CrossedSet,
+    Crossings,
+    EnclosedCrossing,
+    EventCurve,
+    Horseshoe,
+    Manifold,
+    PeriodicOrbit,
+)
+from singimpact.dynamics import Basins, BasinsOver, Bifurcation, Fit, Orbit, Regions, ReleaseMap, Section, model_step
 from singimpact.inputs import InputError, checked_keywords, refuse, takes_two_walls
 from singimpact.scenes import branch_picture, orbit_picture
 from singimpact.scenes.basins_picture import draw_basins, draw_basins_over, draw_both_sides, draw_regions
 from singimpact.scenes.label_places import legend_below, legend_entries, legend_mark
 from singimpact.scenes.scene import Scene
 from singimpact.scenes.style import BLACK, BLUE, DASHES, GREEN, OPEN, ORANGE, PENS, WHITE, darken
-from singimpact.surface.curve import Curve
-from singimpact.surface.impact_surface import ImpactSurface
+from singimpact.surface import Curve, ImpactSurface
 
 # Pictures of W^s and W^u of saddles, of points where they cross, of certified crossings and of horseshoes.
 

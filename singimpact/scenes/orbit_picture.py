@@ -14,9 +14,8 @@ import numpy as np
 
 from singimpact.algebra.numbers import Array, as_float
 from singimpact.branches.orbits import PeriodicOrbit
-from singimpact.dynamics.fit import Fit
+from singimpact.dynamics import Fit, ReleaseMap
 from singimpact.dynamics.orbit import Orbit, Section, orbit as flown
-from singimpact.dynamics.release_map import ReleaseMap
 from singimpact.flights.flight_path import path
 from singimpact.inputs import InputError, checked_keywords, refuse, require, takes_two_walls, whole
 from singimpact.scenes.label_places import legend_below, legend_entries

@@ -6,9 +6,15 @@ from singimpact.theory.completion import (
     symbolic_completion as symbolic_completion,
     symbolic_curve as symbolic_curve,
 )
-from singimpact.theory.contact_points import multiplier as multiplier
+from singimpact.theory.contact_points import (
+    Place as Place,
+    multiplier as multiplier,
+    place as place,
+    points_of as points_of,
+)
 from singimpact.theory.fixed_points import as_dict as as_dict, swan as swan, tangency as tangency
 from singimpact.theory.formulas import (
+    LIMITS as LIMITS,
     chatter_limit as chatter_limit,
     dynamics_on_gamma as dynamics_on_gamma,
     fibre as fibre,
@@ -17,6 +23,7 @@ from singimpact.theory.formulas import (
     v_c_on_arrays as v_c_on_arrays,
 )
 from singimpact.theory.frozen import (
+    COMMAND as COMMAND,
     CURVED as CURVED,
     MOVED as MOVED,
     PLACES as PLACES,
@@ -51,4 +58,11 @@ from singimpact.theory.notation import (
     in_powers as in_powers,
     latex as latex,
 )
-from singimpact.theory.plane_forms import fold_form as fold_form, normal_form as normal_form
+from singimpact.theory.plane_forms import (
+    HIGHEST as HIGHEST,
+    HIGHEST_NUMBERS as HIGHEST_NUMBERS,
+    FoldForm as FoldForm,
+    fold_form as fold_form,
+    normal_form as normal_form,
+)
+from singimpact.theory.power_series import TRUST as TRUST, PowerSeries as PowerSeries

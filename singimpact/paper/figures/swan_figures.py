@@ -6,16 +6,13 @@ from functools import lru_cache
 import numpy as np
 
 from singimpact.algebra.numbers import Array
-from singimpact.dynamics.growth import held
-from singimpact.dynamics.invariant_arcs import before, gammas_within, stable_manifold
-from singimpact.dynamics.unfolded_swan import SwanConfiguration, swan_configuration
+from singimpact.dynamics import SwanConfiguration, before, gammas_within, held, stable_manifold, swan_configuration
 from singimpact.flights.rebound_law import rebound
 from singimpact.impact_oscillator import linear
 from singimpact.paper.figures.contact_figures import rebounded, reset
 from singimpact.paper.figures.panel import ARCS, Dot, Line, Panel, Picture, Point, Region, arc, picture_of
 from singimpact.scenes.style import WHITE
-from singimpact.surface.curve import Window
-from singimpact.surface.impact_surface import ImpactSurface
+from singimpact.surface import ImpactSurface, Window
 
 FINE = 1 / 3000  # of the window of the configuration: its outline is magnified until the usual chords would show
 

@@ -14,14 +14,8 @@ from typing import Any
 import numpy as np
 import sympy
 
-from singimpact.algebra.balls import Balls
-from singimpact.algebra.jets import Jet
-from singimpact.algebra.numbers import as_float
-from singimpact.algebra.precision import balls_at
-from singimpact.algebra.rings import DOUBLES, Multiprecision
-from singimpact.algebra.solving import secant
-from singimpact.contact.contact import Contact, contact_order, force_jet
-from singimpact.contact.points import tangency_points
+from singimpact.algebra import DOUBLES, Balls, Jet, Multiprecision, as_float, balls_at, secant
+from singimpact.contact import Contact, contact_order, force_jet, tangency_points
 from singimpact.impact_oscillator import ImpactOscillator
 from singimpact.paper.trials import true_orbits
 from singimpact.theory.impact_sheet import Sheet, sheet
@@ -216,12 +210,16 @@ def measured(series: Sheet, flow: true_orbits.Flow, quantity: str, steps: list[A
         sigma, t = h * RAY[0].numerator, h * RAY[1].numerator / RAY[1].denominator
         v = _numeric(series.v, sigma, t)
         if quantity == "phi":
-            # The launch velocity whose flight is back after t, by the secant method from the truncated one
-            v = secant(lambda speed: flow(sigma, speed, t)[0], v, v * (1 + v * 0 + 1e-6))
+            v = _true_launch(flow, sigma, v, t)
             misses.append(abs(flow(sigma, v, t)[1] - _numeric(series.xdot, sigma, t)))
         else:
             misses.append(abs(flow(sigma, v, t)[0]))
     return float(np.log(float(misses[-2] / misses[-1])) / np.log(float(steps[-2] / steps[-1])))
+
+
+def _true_launch(flow: true_orbits.Flow, sigma: Any, v: Any, t: Any) -> Any:
+    """The launch velocity whose flight is back after t, by the secant method from the truncated one."""
+    return secant(lambda speed: flow(sigma, speed, t)[0], v, v * (1 + v * 0 + 1e-6))
 
 
 @lru_cache(maxsize=16)
