@@ -3,19 +3,15 @@
 Everything public is reached from here; a name loads its room when it is first used. `__init__.pyi` has the list.
 """
 
-import re
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+from singimpact.handed_on import homes_in
+
 __version__ = "1.3.0"
 
-_LISTED = re.compile(r"^from (\S+) import (?:\(([^)]*)\)|(.*))$", re.MULTILINE)
-_HOMES = {
-    name: home
-    for home, *lists in _LISTED.findall(Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8"))
-    for name in re.findall(r"\b(\w+) as \1\b", " ".join(lists))
-}
+_HOMES = homes_in(Path(__file__).with_suffix(".pyi"))
 """Public name -> the module that has it."""
 _ROOMS = {"claims": "singimpact.paper.claims", "models": "singimpact.models", "theory": "singimpact.theory"}
 """Modules that are used like a collection."""

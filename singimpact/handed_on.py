@@ -5,12 +5,17 @@ So are `flint` and `sympy`: a session in doubles needs neither, and they take 20
 A room's own files import one another by file; whoever stands outside (the public names, the tests) asks the room.
 """
 
+import re
 from collections.abc import Callable, Mapping
+from functools import lru_cache
 from importlib import import_module
+from pathlib import Path
 from types import MethodType
 from typing import TYPE_CHECKING, Any
 
-__all__ = ["Study", "flint", "names_of", "public", "sympy"]
+__all__ = ["Study", "flint", "homes_in", "names_of", "public", "sympy"]
+
+_LISTED = re.compile(r"^from (\S+) import (?:\(([^)]*)\)|(.*))$", re.MULTILINE)
 
 
 class _OnDemand:
@@ -31,16 +36,30 @@ else:
     flint, sympy = _OnDemand("flint"), _OnDemand("sympy")
 
 
-def names_of(room: str, files: Mapping[str, str]) -> Callable[[str], Any]:
-    """The `__getattr__` of a room: `files` has the names of each of its files, divided by blanks.
+def homes_in(stub: Path) -> dict[str, str]:
+    """Name -> the module that has it, as a stub `__init__.pyi` imports it."""
+    return {
+        name: home
+        for home, *lists in _LISTED.findall(stub.read_text(encoding="utf-8"))
+        for name in re.findall(r"\b(\w+) as \1\b", " ".join(lists))
+    }
+
+
+def names_of(room: str, files: Mapping[str, str] | None = None) -> Callable[[str], Any]:
+    """The `__getattr__` of a room: the stub beside it has its names; or `files` those of files, divided by blanks.
 
     A value is looked up in its file each time, so a test that replaces it there replaces it here.
     """
-    homes = {name: f"{room}.{file}" for file, names in files.items() for name in names.split()}
+
+    @lru_cache(maxsize=1)
+    def homes() -> Mapping[str, str]:
+        if files is None:
+            return homes_in(Path(__file__).parent.joinpath(*room.split(".")[1:], "__init__.pyi"))
+        return {name: f"{room}.{file}" for file, names in files.items() for name in names.split()}
 
     def value_of(name: str) -> Any:
-        if name in homes:
-            return getattr(import_module(homes[name]), name)
+        if name in homes():
+            return getattr(import_module(homes()[name]), name)
         raise AttributeError(f"module {room!r} has no attribute {name!r}")
 
     return value_of

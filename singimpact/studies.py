@@ -12,6 +12,8 @@ from functools import wraps
 from inspect import signature
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
+import singimpact as si
+from singimpact import contact, dynamics, surface
 from singimpact.algebra.numbers import as_float, as_fraction, constant
 from singimpact.impact_oscillator import ImpactOscillator, universal
 from singimpact.inputs import InputError, checked_keywords, need, refuse, require, require_known, takes_two_walls, whole
@@ -62,11 +64,9 @@ def swan_points(
     >>> print(swan_points("x + 3*x**3/10", "cos(2*t)")[0].oscillator("0.5").clearance)
     root(u + 0.3*u**3 - 1, 0.829051, 0.829052)
     """
-    from singimpact.contact.swans import swan_points_over_clearance
-
     require(over == "clearance", "over", over, "'clearance'")
     model = ImpactOscillator(f, g, 0, 1, parameters)
-    return swan_points_over_clearance(model, None if between is None else interval(between))
+    return contact.swan_points_over_clearance(model, None if between is None else interval(between))
 
 
 def _bound(end: Any) -> Fraction:
@@ -133,7 +133,6 @@ def constants(r: object, digits: int = 30) -> tuple[Constant, ...]:
     >>> [f"{constant.name} {constant.value}"[:16] for constant in constants("1/2", 16) if constant.order == 3]
     ['lambda 0.7943381', 'mu 1.98559656969', 'kappa_* -0.24734']
     """
-    from singimpact.branches.border import border_orbits
     from singimpact.theory.fixed_points import multipliers
 
     rate, precision = as_fraction(constant("r", r)), max(whole("digits", digits, 1, 1000), 16)
@@ -144,7 +143,7 @@ def constants(r: object, digits: int = 30) -> tuple[Constant, ...]:
         values += [("lambda", order, along.lambda_), ("mu", order, along.mu)]
     values.append(("X", 2, universal(-1, rate).chatter_limit(-1, 0, digits=precision).certified))
     cubic = Oscillator("0", "t**3 - t + q", 0, rate, {"q": "-1/4"})
-    (border,) = border_orbits(cubic, "q", ("-0.3849", "-0.13"), digits=precision, points=9)
+    (border,) = si.border_orbits(cubic, "q", ("-0.3849", "-0.13"), digits=precision, points=9)
     values.append(("kappa_*", 3, border.certified))
     for name, _, value in values:
         need(value is not None, ArithmeticError(f"{name} at r = {rate} is not certified to {precision} digits"))
@@ -211,14 +210,12 @@ def basins(
     >>> basins(linear(2, "0.7", "0.5"), ((0, 3), (0, 1)), 8)
     Basins(8 x 8 states: (inf, 1) chatter for ever 100 %)
     """
-    from singimpact.dynamics.basins_of_attraction import basins
-
     whole("size", size, 2, 10_000)
     starts = isinstance(osc, Oscillator) and osc.autonomous
     names = "((x_low, x_high), (xdot_low, xdot_high))" if starts else "((tau_low, tau_high), (v_low, v_high))"
     tau, v = (None, None) if window is None else _two_ends(window, names)
     if not moving:
-        return basins(osc, tau, v, size, executor, output, impacts, wall)
+        return dynamics.basins(osc, tau, v, size, executor, output, impacts, wall)
     from singimpact.dynamics.basins_over import basins_over
 
     require_known(
@@ -254,11 +251,9 @@ def classify(osc: Oscillator, window: Any = None, between: Any = None, *, wall: 
     >>> classify(universal(-1, "0.5"))
     Classification(cusp 4, tangency 2; fold lines 4; swans over the clearance 0)
     """
-    from singimpact.surface.classification import classify
-
     tau, t = (None, None) if window is None else _two_ends(window, "((tau_low, tau_high), (t_low, t_high))")
     require_model("osc", osc)
-    return classify(osc.seen_from(wall), tau, t, None if between is None else interval(between))
+    return surface.classify(osc.seen_from(wall), tau, t, None if between is None else interval(between))
 
 
 @checked_keywords
@@ -288,7 +283,6 @@ def grown_gamma(osc: Oscillator, window: Any = None, tau: Any = None, *, wall: o
     >>> curve.points[0].tolist(), curve.points[-1].round(3).tolist()
     ([1.0, 0.0], [-1.385, 0.0])
     """
-    from singimpact.dynamics.invariant_arcs import grown_gamma
     from singimpact.surface.classification import default_window
     from singimpact.surface.curve import STATES, Window
 
@@ -300,7 +294,7 @@ def grown_gamma(osc: Oscillator, window: Any = None, tau: Any = None, *, wall: o
         named = "((tau_low, tau_high), (v_low, v_high))"
         tau_ends, v_ends = usual if window is None else _two_ends(window, named)
         window = Window.read(tau_ends, v_ends, axes=STATES)
-    return grown_gamma(osc, window, tau)
+    return dynamics.grown_gamma(osc, window, tau)
 
 
 def _of_models(method: Callable[P, T], of_family: Callable[..., Any] | None = None) -> Callable[P, T]:

@@ -17,24 +17,9 @@ from typing import Any
 
 import numpy as np
 
+from singimpact.algebra import expressions
 from singimpact.algebra.balls import Balls, as_rational
-from singimpact.algebra.expressions import (
-    FUNCTIONS,
-    MINUS_ONE,
-    Call,
-    Expression,
-    Name,
-    Number,
-    Pi,
-    Product,
-    add,
-    evaluate,
-    multiply,
-    names_in,
-    negate,
-    number,
-    subtract,
-)
+from singimpact.algebra.expressions import Expression, Number
 from singimpact.algebra.parsing import LIMITS, bounded_power, defined, from_sympy, parse, refused_function
 from singimpact.inputs import InputError, refuse, require, require_memory, shown
 
@@ -104,7 +89,7 @@ def constant(name: str, value: Any) -> Expression:
     True
     """
     tree = tree_of(value, (), name)
-    require(not names_in(tree), name, value, ACCEPTED)
+    require(not expressions.names_in(tree), name, value, ACCEPTED)
     require(isinstance(tree, Number) or _ball(tree, 64).is_finite(), name, value, ACCEPTED)
     return tree
 
@@ -187,9 +172,9 @@ def rational_near(tree: Expression, bits: int) -> Fraction:
     match tree:
         case Number(value):
             return value
-        case Pi():
+        case expressions.Pi():
             return _pi(bits)
-        case Product((Number(value), Pi())):
+        case expressions.Product((Number(value), expressions.Pi())):
             return value * _pi(bits)
     ball = _ball(tree, bits)
     if not ball.is_finite():  # flint puts 0 where a number is out of its range
@@ -243,7 +228,7 @@ def as_mpf(tree: Expression, context: Any) -> Any:
     """The value of a constant tree in an mpmath context, at that context's precision."""
     from singimpact.algebra.rings import Multiprecision
 
-    return evaluate(tree, {}, Multiprecision(context))
+    return expressions.evaluate(tree, {}, Multiprecision(context))
 
 
 def sign_of(tree: Expression) -> int:
@@ -271,15 +256,15 @@ def _sign_of_parts(tree: Expression) -> int:
     """
     if isinstance(tree, Number):
         return (tree.value > 0) - (tree.value < 0)
-    if isinstance(tree, Product):
+    if isinstance(tree, expressions.Product):
         return math.prod(_sign_of_parts(factor) for factor in tree.factors)
-    return 1 if isinstance(tree, Pi) else 0
+    return 1 if isinstance(tree, expressions.Pi) else 0
 
 
 def compare(left: Expression, right: Expression | int) -> int:
     """-1, 0 or 1 as left is less than, equal to or greater than right."""
-    other = number(right) if isinstance(right, int) else right
-    return 0 if left == other else sign_of(subtract(left, other))
+    other = expressions.number(right) if isinstance(right, int) else right
+    return 0 if left == other else sign_of(expressions.subtract(left, other))
 
 
 def require_unmasked(name: str, values: Any) -> None:
@@ -318,15 +303,15 @@ def float_array(name: str, values: Any) -> np.ndarray[Any, np.dtype[np.float64]]
 # a conversion to float) has no tree and is refused with the line of the function.
 
 OF_ONE: dict[str, Callable[[Expression], Expression]] = {
-    "neg": negate,
+    "neg": expressions.negate,
     "pos": lambda tree: tree,
-    "abs": lambda tree: Call("abs", tree),
+    "abs": lambda tree: expressions.Call("abs", tree),
 }
 OF_TWO: dict[str, Callable[[Expression, Expression], Expression]] = {
-    "add": add,
-    "sub": subtract,
-    "mul": multiply,
-    "truediv": lambda left, right: multiply(left, bounded_power(right, MINUS_ONE)),
+    "add": expressions.add,
+    "sub": expressions.subtract,
+    "mul": expressions.multiply,
+    "truediv": lambda left, right: expressions.multiply(left, bounded_power(right, expressions.MINUS_ONE)),
     "pow": bounded_power,
 }
 # Operations that need a value
@@ -353,7 +338,7 @@ class Letter:
         function = defined(name)
         if function is None:
             raise InputError(refused_function(name))
-        return lambda: Letter(function(self.tree), (1 if name in FUNCTIONS else 4) * self.parts + 5)
+        return lambda: Letter(function(self.tree), (1 if name in expressions.FUNCTIONS else 4) * self.parts + 5)
 
     def decided(self, *_: object) -> object:
         """Refuse what needs a value."""
@@ -422,7 +407,9 @@ def traced(function: Callable[..., Any], names: Sequence[str], what: str) -> Exp
         takes = [item for item in accepted if item.default is item.empty or item.name in names]
         if len(takes) > len(names) or any(item.kind in (item.VAR_POSITIONAL, item.VAR_KEYWORD) for item in takes):
             raise InputError(f"give a function of {', '.join(names)}, or of some of them")
-        letters = [Letter(Name(item.name if item.name in names else names[at])) for at, item in enumerate(takes)]
+        letters = [
+            Letter(expressions.Name(item.name if item.name in names else names[at])) for at, item in enumerate(takes)
+        ]
         text = str(_letter(_read(function)(*letters)).tree)
     except Exception as error:
         causes = (error, error.__cause__, error.__context__)

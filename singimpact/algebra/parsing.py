@@ -11,25 +11,8 @@ from fractions import Fraction
 from itertools import islice
 from typing import Any
 
-from singimpact.algebra.expressions import (
-    BOUND,
-    FOLDING,
-    FUNCTIONS,
-    MINUS_ONE,
-    Call,
-    Expression,
-    Name,
-    Number,
-    Pi,
-    Root,
-    add,
-    bits_of_power,
-    multiply,
-    negate,
-    power,
-    substitute,
-    walk,
-)
+from singimpact.algebra import expressions
+from singimpact.algebra.expressions import Expression, Number
 from singimpact.inputs import InputError, meant, need, shown
 
 
@@ -75,7 +58,7 @@ DEFINITIONS = {
     "log2": "log(w)/log(2)",
     "log10": "log(w)/log(10)",
 }
-_LANGUAGE = f"numbers, + - * / **, pi and {' '.join(FUNCTIONS)} {' '.join(DEFINITIONS)}"
+_LANGUAGE = f"numbers, + - * / **, pi and {' '.join(expressions.FUNCTIONS)} {' '.join(DEFINITIONS)}"
 SYNONYMS = {"ln": "log", "Abs": "abs", "fabs": "abs", "absolute": "abs"} | {
     f"arc{name[1:]}": name for name in ("atan", "asin", "acos", "asinh", "acosh", "atanh")
 }
@@ -130,16 +113,16 @@ def defined(name: str) -> Callable[[Expression], Expression] | None:
     0.5*(exp(x) - exp(-x)) None
     """
     name = SYNONYMS.get(name, name)
-    if name in FUNCTIONS:
-        return lambda argument: Call(name, argument)
+    if name in expressions.FUNCTIONS:
+        return lambda argument: expressions.Call(name, argument)
     if name not in DEFINITIONS:
         return None
     definition = parse(DEFINITIONS[name], ("w",))
 
     def written_out(argument: Expression) -> Expression:
-        if sum(1 for _ in islice(walk(argument), LIMITS.parts)) == LIMITS.parts:
+        if sum(1 for _ in islice(expressions.walk(argument), LIMITS.parts)) == LIMITS.parts:
             raise InputError(f"the argument of {name} has {LIMITS.parts} parts or more")
-        return substitute(definition, {"w": argument})
+        return expressions.substitute(definition, {"w": argument})
 
     return written_out
 
@@ -216,9 +199,9 @@ class _Parser:
         while self.kind == "sign" and self.token in "+-":
             minus = self.token == "-"
             self.advance()
-            terms.append(negate(self.product()) if minus else self.product())
+            terms.append(expressions.negate(self.product()) if minus else self.product())
         self.depth -= 1
-        return add(*terms) if len(terms) > 1 else terms[0]
+        return expressions.add(*terms) if len(terms) > 1 else terms[0]
 
     def product(self) -> Expression:
         factors = [self.signed()]
@@ -226,8 +209,8 @@ class _Parser:
             divide = self.token == "/"
             self.advance()
             factor = self.signed()
-            factors.append(self.raised(factor, MINUS_ONE) if divide else factor)
-        return multiply(*factors) if len(factors) > 1 else factors[0]
+            factors.append(self.raised(factor, expressions.MINUS_ONE) if divide else factor)
+        return expressions.multiply(*factors) if len(factors) > 1 else factors[0]
 
     def signed(self) -> Expression:
         minus = False
@@ -235,7 +218,7 @@ class _Parser:
             minus ^= self.token == "-"
             self.advance()
         tree = self.powered()
-        return negate(tree) if minus else tree
+        return expressions.negate(tree) if minus else tree
 
     def powered(self) -> Expression:
         base = self.atom()
@@ -279,7 +262,7 @@ class _Parser:
         """root(function of u, low, high): the one zero between two rationals."""
         from singimpact.algebra.isolated_zeros import is_one_root
 
-        outer, self.names = self.names, (BOUND,)
+        outer, self.names = self.names, (expressions.BOUND,)
         function = self.sum()
         self.names, ends = outer, []
         while self.take(","):
@@ -287,11 +270,11 @@ class _Parser:
         if not self.take(")") or len(ends) != 2 or not all(isinstance(end, Number) for end in ends):
             raise self.refusal("root takes a function of u and two rationals, root(u**2 - 2, 1, 2)")
         low, high = (end.value for end in ends if isinstance(end, Number))
-        root_ = Root(function, low, high)
+        root_ = expressions.Root(function, low, high)
         self.roots += 1
         if self.roots > LIMITS.roots:
             raise self.refusal(f"it has more than {LIMITS.roots} roots")
-        pieces = LIMITS.zeros // (self.roots**2 * sum(1 for _ in walk(function)))
+        pieces = LIMITS.zeros // (self.roots**2 * sum(1 for _ in expressions.walk(function)))
         if not low < high or not is_one_root(root_, pieces):
             raise self.refusal(
                 f"{shown(str(root_))} is not one zero: the function must change sign once between the two numbers"
@@ -316,9 +299,9 @@ class _Parser:
         if self.token == "." and token in ("np", "numpy", "math", "sympy", "sp", "cmath"):
             raise self.refusal(f"write the names of functions and numbers without {token}., as in cos(2*t)")
         if token in self.names:
-            return Name(token)
+            return expressions.Name(token)
         if token == "pi":
-            return Pi()
+            return expressions.Pi()
         raise self.refusal(unknown_name(token, self.names))
 
 
@@ -340,10 +323,10 @@ def bounded_power(base: Expression, exponent: Expression) -> Expression:
             raise InputError(
                 f"the exponent {shown(exponent.value)} is too large; at most {LIMITS.exponent} is accepted"
             )
-        if isinstance(base, Number) and bits_of_power(base, exponent) > FOLDING.bits:
-            raise InputError(f"a constant power has more than {FOLDING.bits} bits")
+        if isinstance(base, Number) and expressions.bits_of_power(base, exponent) > expressions.FOLDING.bits:
+            raise InputError(f"a constant power has more than {expressions.FOLDING.bits} bits")
     try:
-        return power(base, exponent)
+        return expressions.power(base, exponent)
     except ZeroDivisionError:
         raise InputError("it divides by zero") from None
 
@@ -379,21 +362,21 @@ def _convert(tree: Any, names: tuple[str, ...], depth: int) -> Expression:
         sign, mantissa, exponent, _ = tree._mpf_
         return Number((-1 if sign else 1) * Fraction(int(mantissa)) * Fraction(2) ** int(exponent))
     if kind == "Pi":
-        return Pi()
+        return expressions.Pi()
     if tree.is_Symbol:
         if tree.name not in names:
             raise InputError(unknown_name(tree.name, names))
-        return Name(tree.name)
+        return expressions.Name(tree.name)
     if kind == "Exp1":
-        return Call("exp", Number(Fraction(1)))
+        return expressions.Call("exp", Number(Fraction(1)))
     parts = [_convert(argument, names, depth + 1) for argument in tree.args]
     if tree.is_Add:
-        return add(*parts)
+        return expressions.add(*parts)
     if tree.is_Mul:
-        return multiply(*parts)
+        return expressions.multiply(*parts)
     if tree.is_Pow:
         half = isinstance(parts[1], Number) and parts[1].value == Fraction(1, 2)
-        return Call("sqrt", parts[0]) if half else bounded_power(parts[0], parts[1])
+        return expressions.Call("sqrt", parts[0]) if half else bounded_power(parts[0], parts[1])
     function = defined(kind) if len(parts) == 1 else None
     if function is None:
         rough = ROUGH.get(kind, kind) in SMOOTH

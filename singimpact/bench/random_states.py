@@ -19,8 +19,7 @@ from typing import Any
 import flint
 import numpy as np
 
-from singimpact.algebra.numbers import Array
-from singimpact.algebra.precision import balls_at
+from singimpact.algebra import Array, balls_at
 from singimpact.bench.stress.flown import hit_trial
 from singimpact.bench.stress.judging import BITS, Launch, Trial
 from singimpact.bench.truth.first_hit import first_hit

@@ -136,8 +136,7 @@ def periodic(
 def _words(osc: Oscillator, word: Any, k: Any, start: Any, others: tuple[Any, Any]) -> PeriodicOrbits:
     """The orbits between two walls whose impacts have a word."""
     v, digits = others
-    if v is not None:
-        raise refuse("v", v, "no v for a model with two walls: osc.one_wall('lower') has one")
+    require(v is None, "v", v, "no v for a model with two walls: osc.one_wall('lower') has one")
     if osc.period is None:
         raise InputError("the forcing has no period: a periodic orbit between two walls needs one")
     closing = closing_of_word(osc, word_of(word), _count("k", k, 1))

@@ -18,7 +18,7 @@ from singimpact.branches.events import Event
 from singimpact.branches.orbits import PeriodicOrbit, same_states
 from singimpact.branches.periodic import periodic
 from singimpact.dynamics.basins_of_attraction import Basins, basins
-from singimpact.inputs import InputError, checked_keywords, refuse, require, takes_two_walls, whole
+from singimpact.inputs import InputError, checked_keywords, need, refuse, require, takes_two_walls, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.oscillator.moving_number import RESTITUTION, with_number
 from singimpact.oscillator.wall_acceleration import largest_push
@@ -170,8 +170,7 @@ class OrbitTransitions(Transitions):
         step = most if apart is None else as_float(constant("apart", apart))
         require(step > 0, "apart", apart, "a number > 0")
         models = [_moved(self.oscillator, self.over, chosen.value + side * step) for side in (-1, 1)]
-        if models[0].period is None:
-            raise InputError("the forcing has no period: basins need one")
+        need(models[0].period is not None, InputError("the forcing has no period: basins need one"))
         period = as_float(models[0].period)
         speeds = (0.0, largest_push(models[0]) * period / 4) if v is None else window_ends("v", v)
         tau = (chosen.tau - period / 2, chosen.tau + period / 2)

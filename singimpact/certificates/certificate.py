@@ -20,7 +20,7 @@ from singimpact.certificates import checker
 from singimpact.dynamics.chatter import ChatterLimit
 from singimpact.dynamics.gamma_proof.proof import CertifiedGamma
 from singimpact.flights.results import CertifiedImpact, Flight
-from singimpact.inputs import InputError, checked_keywords, refuse, takes_two_walls, whole
+from singimpact.inputs import InputError, checked_keywords, need, refuse, takes_two_walls, whole
 from singimpact.oscillator.model import Oscillator, require_rebound
 from singimpact.status import Status, Wall
 from singimpact.store import write_text
@@ -188,8 +188,7 @@ def _of_limit(limit: ChatterLimit) -> Certificate:
         raise InputError(
             "the chatter limit is not certified: it needs digits=, one state, and a number for restitution"
         )
-    if not sign_of(limit.launch[1]):
-        raise InputError("a chatter that starts at rest has no certificate: launch with v > 0")
+    need(sign_of(limit.launch[1]), InputError("a chatter that starts at rest has no certificate: launch with v > 0"))
     launch = {name: str(coordinate) for name, coordinate in zip(("tau", "v"), limit.launch, strict=True)}
     ends = "lift-off" if limit.status == Status.lifts_off else "accumulation"
     statement = {"launch": launch, "ends": ends, "tau": limit.certified.as_dict()}

@@ -6,5 +6,4 @@ Not here: anything a Python caller could want too (`impact_oscillator`), nor tab
 from singimpact.cli.group import main as main
 from singimpact.handed_on import names_of
 
-_FILES = {"branch_commands": "EVENTS as_listed on_curve", "group": "COMMANDS main"}
-__getattr__ = names_of(__name__, _FILES)
+__getattr__ = names_of(__name__)

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+import singimpact as si
+from singimpact import documents, scenes
 from singimpact.branches.events import KINDS, PERIOD_DOUBLING
 from singimpact.cli.model_options import (
     model_options,
@@ -38,6 +40,8 @@ if TYPE_CHECKING:
     from singimpact.branches.event_curve import EventCurve
     from singimpact.branches.events import Event
     from singimpact.branches.orbits import PeriodicOrbit
+    from singimpact.certificates.certificate import Certificate
+    from singimpact.impact_oscillator import ImpactOscillator
 
 
 @click.command()
@@ -71,9 +75,7 @@ def branch_command(
     if csv is not None:
         write_table(csv, one_table({"branch": number, **branch.table()} for number, branch in enumerate(branches, 1)))
     if output is not None:
-        from singimpact.scenes import new_axes, plot
-
-        save(plot(branches, new_axes(7.2, 4.8), height=height).figure, output)
+        save(si.plot(branches, scenes.new_axes(7.2, 4.8), height=height).figure, output)
     values = {"model": model.to_dict(), "over": over, "branches": [branch.as_dict() for branch in branches]}
     give(values, shown_branches(branches), as_json)
 
@@ -145,19 +147,16 @@ def events_command(
     both = None if ends is None else ((ends[0][0], ends[1][0]), (ends[0][1], ends[1][1]))
     branches = take_branches(take_orbits(model, orbit, start), over[0], None if both is None else both[0], 2000)
     chosen = choose(branches, kinds, index)
-    from singimpact.branches.event_curve import event_curve
 
     curves: list[EventCurve] = []
     for event in chosen:
         if not any(on_curve(event, curve) for curve in curves):
-            curves.append(event_curve(event, over, both, points=points))
+            curves.append(si.event_curve(event, over, both, points=points))
     if csv is not None:
         tables = [{"curve": number, "kind": curve.kind, **curve.table()} for number, curve in enumerate(curves, 1)]
         write_table(csv, one_table(tables))
     if output is not None:
-        from singimpact.scenes import new_axes, plot
-
-        save(plot(curves, new_axes(7.2, 4.8)).figure, output)
+        save(si.plot(curves, scenes.new_axes(7.2, 4.8)).figure, output)
     values = {"model": model.to_dict(), "over": over, "curves": [curve.as_dict() for curve in curves]}
     give(values, shown_curves(curves), as_json)
 
@@ -181,10 +180,8 @@ def choose(branches: list[Branch], kinds: tuple[str, ...], index: int | None) ->
 
 def _with_impact(event: Event, free: Branch) -> Event:
     """A graze of orbits without impact, on the branch of orbits with the impact that begins there."""
-    from singimpact.branches.branch import branch
-
     ends = float(free.parameter.min()), float(free.parameter.max())
-    same = [each for each in branch(event.others()[0], event.over, ends).events if each.described.at_impact]
+    same = [each for each in si.branch(event.others()[0], event.over, ends).events if each.described.at_impact]
     return min(same, key=lambda each: abs(each.parameter - event.parameter))
 
 
@@ -247,9 +244,8 @@ def border_command(
     """
     ends = take_ends(options.pop("low"), options.pop("high"))
     model = take_model(options)
-    from singimpact.branches.border import border_orbits
 
-    borders = border_orbits(model, over, ends, digits=digits, periods=periods, points=points)
+    borders = si.border_orbits(model, over, ends, digits=digits, periods=periods, points=points)
     if output is not None:
         if not borders:
             raise InputError(f"no border orbit to draw: {'; '.join(borders.notes)}")
@@ -265,10 +261,8 @@ def border_command(
 def _picture(border: BorderOrbit) -> Any:
     from matplotlib.figure import Figure
 
-    from singimpact.scenes.branch_picture import draw_border
-
     figure = Figure(figsize=(7.2, 5.2), dpi=150, layout="constrained")
-    return draw_border(border, *figure.subplots(2, sharex=True, height_ratios=(3, 2))).figure
+    return scenes.draw_border(border, *figure.subplots(2, sharex=True, height_ratios=(3, 2))).figure
 
 
 def as_listed(border: BorderOrbit, cascade: bool) -> dict[str, Any]:
@@ -380,16 +374,12 @@ def certify_command(files: tuple[str, ...], tau: str | None, v: str | None, **op
     certificate = _made(take_model(options), kinds[0] if kinds else "", near, options)
     text = certificate.text
     if options["format"] == "coq":
-        from singimpact.documents.coq_flights import coq_flight
-
-        text = coq_flight(certificate.content, repr(certificate)[1:-1])
+        text = documents.coq_flight(certificate.content, repr(certificate)[1:-1])
     certificate.check()
     emit(text.rstrip("\n"), options["output"])
 
 
 def _gamma(files: tuple[str, ...], tau: str | None, options: dict[str, Any]) -> None:
-    from singimpact.certificates.certificate import certify
-
     taken = [
         *(f"--{name}" for name in ("orbit", "border", "chatter", "horseshoe", "event", "doubling") if options[name]),
         *(["--format coq"] if options["format"] == "coq" else []),
@@ -399,52 +389,47 @@ def _gamma(files: tuple[str, ...], tau: str | None, options: dict[str, Any]) -> 
     if options["output"] is not None:
         require_writable(options["output"])
     proof = take_model(options, *files).certified_gamma(tau, reach=options["reach"], restitution=options["between"])
-    certificate = certify(proof)
+    certificate = si.certify(proof)
     certificate.check()
     click.echo("\n".join([repr(proof)[1:-1], *proof.notes.values()]), err=True)
     emit(certificate.text.rstrip("\n"), options["output"])
 
 
-def _made(model: Any, kind: str, near: State, options: dict[str, Any]) -> Any:
-    from singimpact.branches.homoclinic import homoclinic_points
-    from singimpact.certificates.certificate import certify
-
+def _made(model: ImpactOscillator, kind: str, near: State, options: dict[str, Any]) -> Certificate:
     digits = options["digits"]
     if kind == "":
-        return certify(model.impact_map(*(near or ()), digits=digits))
+        return si.certify(model.impact_map(*(near or ()), digits=digits))
     if kind == "chatter":
-        return certify(model.chatter_limit(*(near or ()), digits=digits))
+        return si.certify(model.chatter_limit(*(near or ()), digits=digits))
     if kind == "border":
-        return certify(_border(model, options["border"], digits))
+        return si.certify(_border(model, options["border"], digits))
     if kind == "orbit":
         orbit = _orbit(model, kind, options[kind], near)
         wanted = options["event"] or ((PERIOD_DOUBLING.name, *options["doubling"]) if options["doubling"] else None)
-        return certify((_event(orbit, *wanted) if wanted else orbit).certified(digits))
-    crossings = homoclinic_points(_orbit(model, kind, options[kind], near, saddle=True))
+        return si.certify((_event(orbit, *wanted) if wanted else orbit).certified(digits))
+    crossings = si.homoclinic_points(_orbit(model, kind, options[kind], near, saddle=True))
     need(len(crossings), InputError("no homoclinic orbit of the saddle is found"))
     between = options["between"]
-    return certify(crossings[0].horseshoes("restitution", between) if between else crossings[0].horseshoe())
+    return si.certify(crossings[0].horseshoes("restitution", between) if between else crossings[0].horseshoe())
 
 
-def _border(model: Any, given: tuple[str, float, float], digits: int) -> Any:
-    from singimpact.branches.border import border_orbits
-
+def _border(model: ImpactOscillator, given: tuple[str, float, float], digits: int) -> BorderOrbit:
     over, low, high = given
-    found = border_orbits(model, over=over, between=(low, high), digits=digits)
+    found = si.border_orbits(model, over=over, between=(low, high), digits=digits)
     need(found, InputError(f"--border {over} {low:g} {high:g}: no border orbit is found there"))
     return found[0]
 
 
-def _event(orbit: Any, kind: str, over: str, low: float, high: float) -> Any:
+def _event(orbit: PeriodicOrbit, kind: str, over: str, low: float, high: float) -> Event:
     """The first event of a kind, of visible orbits of a branch."""
-    from singimpact.branches.branch import branch
-
-    found = [each for each in branch(orbit, over, (low, high)).events if each.kind == kind and each.orbit.visible]
+    found = [each for each in si.branch(orbit, over, (low, high)).events if each.kind == kind and each.orbit.visible]
     need(found, InputError(f"--event {kind} {over} {low:g} {high:g}: no {kind} of visible orbits is found there"))
     return found[0]
 
 
-def _orbit(model: Any, kind: str, counts: tuple[int, int], near: State, saddle: bool = False) -> Any:
+def _orbit(
+    model: ImpactOscillator, kind: str, counts: tuple[int, int], near: State, saddle: bool = False
+) -> PeriodicOrbit:
     orbits = [each for each in model.periodic(*counts, start=near) if not (saddle and each.stable)]
     if len(orbits) != 1:
         kinds = "saddles" if saddle else "orbits"

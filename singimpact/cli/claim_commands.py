@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from singimpact import __version__
+import singimpact as si
+from singimpact import __version__, documents, paper
 from singimpact.cli.group import LINEAR
 from singimpact.cli.output import as_json_text, columns, emit, give, output_options
-from singimpact.inputs import InputError
+from singimpact.inputs import InputError, need
 from singimpact.store import folder, require_writable, written
 
 if TYPE_CHECKING:
@@ -60,9 +61,7 @@ def verify_command(
     --certificates are checked by a second program, singimpact/certificates/claims_checker.py, those of
     --coq by Coq (8.16 or newer), in the order of _CoqProject: coqc -Q . Claims FILE.
     """
-    from singimpact.paper.claims.verdicts import verify
-
-    verdicts = verify(ids or None, beyond=beyond)
+    verdicts = si.verify(ids or None, beyond=beyond)
     if certificates is not None:
         verdicts.save_certificates(certificates)
     if coq is not None:
@@ -94,9 +93,7 @@ def claims_command() -> None:
 @output_options
 def listed(as_json: bool, output: str | None) -> None:
     """Every claim: id, section, statement."""
-    from singimpact.paper.claims import INDEX
-
-    rows = [[entry.id, entry.section, entry.title] for entry in INDEX.values()]
+    rows = [[entry.id, entry.section, entry.title] for entry in paper.INDEX.values()]
     names = ("id", "section", "title")
     give({"claims": [dict(zip(names, row, strict=True)) for row in rows]}, columns(names, rows), as_json, output)
 
@@ -106,15 +103,12 @@ def listed(as_json: bool, output: str | None) -> None:
 @output_options
 def show(name: str, as_json: bool, output: str | None) -> None:
     """One claim: the printed statement, the verdict, the evidence, the claims it rests on and those that rest on it."""
-    from singimpact.paper.claims import BEYOND, CLAIMS, INDEX, run, select
-    from singimpact.paper.claims.index import dependants
-
-    index = INDEX | BEYOND
-    verdict = run(select([name]), cached=True)[-1]
+    index = paper.INDEX | paper.BEYOND
+    verdict = paper.run(paper.select([name]), cached=True)[-1]
     data: dict[str, Any] = verdict.as_dict() | {
-        "mutants": len(CLAIMS[name].mutants),
+        "mutants": len(paper.CLAIMS[name].mutants),
         "rested_on_by": [other for other, entry in index.items() if name in entry.rests_on],
-        "falls_with_it": dependants(index, name),
+        "falls_with_it": paper.dependants(index, name),
     }
     give(data, "\n".join(f"{key:14} {_told(value)}" for key, value in data.items()), as_json, output)
 
@@ -139,16 +133,13 @@ def _item(item: dict[str, Any]) -> str:
 @output_options
 def graph(svg: bool, as_json: bool, output: str | None) -> None:
     """The claims that each claim rests on, as text, as JSON or as an SVG picture."""
-    from singimpact.paper.claims import INDEX, run, select
-    from singimpact.paper.claims.index import as_svg, as_text
-
     if as_json:
-        text = as_json_text({name: list(entry.rests_on) for name, entry in INDEX.items()})
+        text = as_json_text({name: list(entry.rests_on) for name, entry in paper.INDEX.items()})
     elif svg:
-        verdicts = run(select(), cached=True)
-        text = as_svg(INDEX, {one.id: one.in_words if one.corrected else one.worth for one in verdicts})
+        verdicts = paper.run(paper.select(), cached=True)
+        text = paper.as_svg(paper.INDEX, {one.id: one.in_words if one.corrected else one.worth for one in verdicts})
     else:
-        text = as_text(INDEX)
+        text = paper.as_text(paper.INDEX)
     emit(text, output)
 
 
@@ -157,12 +148,9 @@ def graph(svg: bool, as_json: bool, output: str | None) -> None:
 @output_options
 def impact(name: str, as_json: bool, output: str | None) -> None:
     """The claims that would fail with one claim."""
-    from singimpact.paper.claims import INDEX, select
-    from singimpact.paper.claims.index import dependants
-
-    select([name])  # an unknown id is refused with the nearest known ones
-    affected = dependants(INDEX, name)
-    rows = [[other, INDEX[other].title] for other in affected]
+    paper.select([name])  # an unknown id is refused with the nearest known ones
+    affected = paper.dependants(paper.INDEX, name)
+    rows = [[other, paper.INDEX[other].title] for other in affected]
     text = columns(["id", "statement"], rows) if rows else f"nothing rests on {name}"
     give({"id": name, "falls": affected}, text, as_json, output)
 
@@ -178,14 +166,12 @@ LISTED = ("text", "markdown", "latex", "pdf", "json")
 @click.option("-o", "--output", metavar="FILE", help="Write to this file instead of standard output.")
 def errata_command(form: str, as_json: bool, output: str | None) -> None:
     """Every statement that fails as printed, with its correction, a witness, and the effect on later statements."""
-    from singimpact.paper.sections.errata import errata
-
     form = "json" if as_json else form
     if form == "pdf" and output is None:
         raise InputError("--format pdf goes to a file only: give its name with -o")
     if output is not None:
         require_writable(output)
-    misprints = errata()
+    misprints = si.errata()
     if form == "pdf":
         _write_pdf(misprints.latex(), str(output))
     else:
@@ -193,11 +179,9 @@ def errata_command(form: str, as_json: bool, output: str | None) -> None:
 
 
 def _write_pdf(source: str, output: str) -> None:
-    from singimpact.documents.document_steps import CompileError, compiled
-
     try:
-        pdf = compiled(source).pdf
-    except CompileError as error:
+        pdf = documents.compiled(source).pdf
+    except documents.CompileError as error:
         raise click.ClickException(str(error)) from None
     with written(output) as draft:
         Path(draft).write_bytes(pdf)
@@ -240,17 +224,13 @@ def derive_command(
     numpy always write series. The numpy file of a model holds tau_* and the radius in which each series is accurate.
     """
     if only is not None:
-        from singimpact.documents.series_documents import series_formulas
-
-        click.echo("\n".join(series_formulas(_request(order, model, tau, keep), only)))
+        click.echo("\n".join(documents.series_formulas(_request(order, model, tau, keep), only)))
         return
     form = "json" if as_json else form
     if form == "pdf" and output is None:
         raise InputError("--format pdf goes to files only: give a folder with -o")
     if form == "pdf":
-        from singimpact.documents.document_steps import require_latex
-
-        require_latex()
+        documents.require_latex()
     if output is not None:
         folder(output)  # an error in the output path is raised before the computation, not after it
     if form in ("sympy", "numpy") or order is not None or model is not None:
@@ -258,48 +238,40 @@ def derive_command(
             raise InputError(f"{names[0]} is a section of the derivations: a series takes --order and --model alone")
         _series(_request(order, model, tau, keep), form, output)
         return
-    if tau is not None or keep:
-        raise InputError("--tau and --keep belong to --model")
-    from singimpact.paper.sections.stored_sections import kept_sections, marks_of
+    need(tau is None and not keep, InputError("--tau and --keep belong to --model"))
 
-    derived = kept_sections(names)
-    _write(derived, marks_of(derived), form, output)
+    derived = paper.kept_sections(names)
+    _write(derived, paper.marks_of(derived), form, output)
 
 
-def _request(order: int | None, model: str | None, tau: str | None, keep: tuple[str, ...]) -> SeriesRequest:
-    from singimpact.documents.series_documents import SeriesRequest
+def _request(order: int | None, model: str | None, tau: str | None, keep: tuple[str, ...]) -> documents.SeriesRequest:
     from singimpact.impact_oscillator import read_model
 
-    return SeriesRequest(6 if order is None else order, None if model is None else read_model(model), tau, keep)
+    oscillator = None if model is None else read_model(model)
+    return documents.SeriesRequest(6 if order is None else order, oscillator, tau, keep)
 
 
 def _series(request: SeriesRequest, form: str, output: str | None) -> None:
     """The series as text to standard output, or as files in the folder."""
-    from singimpact.documents.series_documents import series_section, series_text
-    from singimpact.paper.sections import NOTATION
-
     if form in ("sympy", "numpy", "json"):
-        text = series_text(request, form)
+        text = documents.series_text(request, form)
         if output is None:
             click.echo(text, nl=False)
             return
         with written(Path(output) / ("series.json" if form == "json" else f"series_{form}.py")) as draft:
             draft.write_bytes(text.encode())
         return
-    _write([series_section(request), NOTATION], {}, form, output)
+    _write([documents.series_section(request), paper.NOTATION], {}, form, output)
 
 
 def _write(document: list[Section], marks: dict[str, Mark], form: str, output: str | None) -> None:
     """The document as text to standard output, or as files in the folder."""
-    from singimpact.documents.document_steps import CompileError
-    from singimpact.documents.rendering import as_files, as_text
-
     if output is None:
-        click.echo(as_text(document, marks, form), nl=False)
+        click.echo(documents.as_text(document, marks, form), nl=False)
         return
     try:
-        files = as_files(document, marks, form, _picture)
-    except CompileError as error:
+        files = documents.as_files(document, marks, form, _picture)
+    except documents.CompileError as error:
         raise click.ClickException(str(error)) from None
     for name, content in files.items():
         with written(Path(output) / name) as draft:
@@ -312,11 +284,10 @@ def _picture(name: str) -> bytes:
 
     from singimpact.cli.output import save
     from singimpact.paper.figures import kept_picture
-    from singimpact.paper.figures.figure_rendering import drawn
 
     with TemporaryDirectory() as directory:
         number = name.removeprefix("figure")
-        save(drawn(kept_picture(int(number) if number.isdigit() else number)), f"{directory}/{name}.pdf")
+        save(paper.drawn(kept_picture(int(number) if number.isdigit() else number)), f"{directory}/{name}.pdf")
         return Path(directory, f"{name}.pdf").read_bytes()
 
 
@@ -327,9 +298,7 @@ def _picture(name: str) -> bytes:
 @output_options
 def fixed_points_command(contact: str, restitution: str, digits: int, as_json: bool, output: str | None) -> None:
     """Fixed points at a tangency or at a swan, each with a radius within which the true value lies."""
-    from singimpact.theory import fixed_points
-
-    enclosures = getattr(fixed_points, contact)(restitution, digits).as_dict()
+    enclosures = getattr(si.fixed_points, contact)(restitution, digits).as_dict()
     rows = [[name, x["value"], x["radius"]] for name, x in enclosures.items()]
     give(enclosures, columns(["name", "value", "radius"], rows), as_json, output)
 
@@ -345,9 +314,7 @@ def constants_command(restitution: str, digits: int, as_json: bool, output: str 
 
     Each has its contact order, the claim that has it, and its laws as r tends to 0 and to 1.
     """
-    from singimpact.studies import constants
-
-    numbers = constants(restitution, digits)
+    numbers = si.constants(restitution, digits)
     header = ["name", "order", "value", "source", "r -> 0", "r -> 1"]
     rows = [[one.name, str(one.order), str(one.value), one.source, one.at_zero, one.at_one] for one in numbers]
     give([one.as_dict() for one in numbers], columns(header, rows), as_json, output)

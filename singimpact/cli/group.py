@@ -50,7 +50,7 @@ FILES = {
     **dict.fromkeys(("sweep", "basins", "bifurcation", "regions", "ensemble"), "long_run_commands"),
     **dict.fromkeys(("branch", "events", "border", "certify"), "branch_commands"),
     **dict.fromkeys(("verify", "claims", "errata", "derive", "fixed-points", "constants", "cite"), "claim_commands"),
-    **dict.fromkeys(("scene", "classify", "explore"), "picture_commands"),
+    **dict.fromkeys(("figure", "scene", "classify", "explore"), "picture_commands"),
     **dict.fromkeys(("bench", "stress", "selftest"), "measuring_commands"),
 }
 

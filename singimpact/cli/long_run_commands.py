@@ -5,6 +5,8 @@ from typing import Any
 
 import click
 
+import singimpact as si
+from singimpact import algebra, dynamics, flights, scenes, surface
 from singimpact.cli.model_options import model_options, over_option, take_branches, take_model, take_orbits, wall_option
 from singimpact.cli.output import (
     choice_option,
@@ -54,19 +56,17 @@ def sweep_command(
     """
     import numpy as np
 
-    from singimpact.algebra.numbers import as_float, constant
     from singimpact.case_pools import WorkerPool
-    from singimpact.cases import sweep
 
     oscillator = take_model(options)
     if over not in {"clearance", "restitution", *oscillator.parameters}:
         numbers = ", ".join(["clearance", "restitution", *oscillator.parameters])
         raise InputError(f"--over {over} is not a number of the model: give one of {numbers}")
-    first, last = as_float(constant("--from", low)), as_float(constant("--to", high))
+    first, last = algebra.as_float(algebra.constant("--from", low)), algebra.as_float(algebra.constant("--to", high))
     values = np.linspace(first, last, points).tolist()
     ask = partial(last_state, oscillator.to_dict(), over, tau, v, impacts)
     with WorkerPool(workers) as pool:
-        ends = np.array(sweep(ask, values, pool, keep))
+        ends = np.array(si.sweep(ask, values, pool, keep))
     rows = [[value, *map(float, row[:2]), Status(int(row[2])).name] for value, row in zip(values, ends, strict=True)]
     names = [over, "tau", "v", "status"]
     cases = [dict(zip(names, row, strict=True)) for row in rows]
@@ -74,14 +74,11 @@ def sweep_command(
     give({"model": oscillator.to_dict(), "impacts": impacts, "cases": cases}, text, as_json, output)
 
 
-def last_state(fields: dict[str, Any], over: str, tau: str, v: str, impacts: int, value: float) -> Any:
+def last_state(fields: dict[str, Any], over: str, tau: str, v: str, impacts: int, value: float) -> algebra.Array:
     """tau, v and status after the last impact. A module-level function, so that it can be pickled."""
     import numpy as np
 
-    from singimpact.flights.orbits import iterate
-    from singimpact.impact_oscillator import ImpactOscillator
-
-    ends = iterate(ImpactOscillator(**fields).replace(**{over: value}), tau, v, impacts)
+    ends = flights.iterate(si.ImpactOscillator(**fields).replace(**{over: value}), tau, v, impacts)
     return np.array([float(ends.tau), float(ends.v), float(ends.status)])
 
 
@@ -127,12 +124,11 @@ def basins_command(
         refuse_given(("size", "layer"), "one of the two: --over has --values and --states")
         from singimpact.case_pools import processes
         from singimpact.dynamics.basins_over import basins_over
-        from singimpact.scenes import plot
 
         how = {"states": states, "output": keep}
         with processes(workers) as pool:
             shares = basins_over(model, over[0], over[1:], (tau, v), values, impacts, wall, executor=pool, **how)
-        save(plot(shares).figure, output)
+        save(si.plot(shares).figure, output)
         numbers, lines = shares.as_dict(), zip(shares.values.tolist(), shares.share.tolist(), strict=True)
         rows = [[f"{at:.6g}", *(f"{share:.4f}" for share in line)] for at, line in lines]
         text = columns([shares.over, *numbers["attractor"]], rows)
@@ -141,12 +137,10 @@ def basins_command(
 
     def make() -> tuple[Any, Any]:
         from singimpact.case_pools import processes
-        from singimpact.dynamics.basins_of_attraction import basins
-        from singimpact.scenes.basins_picture import draw_basins, draw_first_chatter
 
         with processes(workers) as pool:
-            result = basins(model, tau, v, size, pool, keep, impacts, wall)
-        draw = draw_basins if layer == LAYERS[0] else draw_first_chatter
+            result = dynamics.basins(model, tau, v, size, pool, keep, impacts, wall)
+        draw = scenes.draw_basins if layer == LAYERS[0] else scenes.draw_first_chatter
         values = result.as_dict()
         first = float(values["first_chatter_completes"].mean())
         return draw(result).figure, {"classes": values["classes"], "first_chatter_completes": first}
@@ -213,17 +207,15 @@ def bifurcation_command(
     """
     model = take_model(options)
     from singimpact.case_pools import processes
-    from singimpact.dynamics.bifurcation_diagram import bifurcation
-    from singimpact.scenes.branch_picture import bifurcation_sheet
 
     # in a direction each orbit begins where the one before ends: there is nothing to share out
     with processes(workers if direction is None else None) as pool:
         settings: dict[str, Any] = {"start": start, "impacts": impacts, "kept": last_events, "direction": direction}
-        diagram = bifurcation(model, over, (low, high), points, **settings, executor=pool, output=keep)
+        diagram = si.bifurcation(model, over, (low, high), points, **settings, executor=pool, output=keep)
     branches = [
         branch for n, k in follow for branch in take_branches(take_orbits(model, (n, k), None), over, (low, high), 2000)
     ]
-    save(bifurcation_sheet(diagram, branches), output)
+    save(scenes.bifurcation_sheet(diagram, branches), output)
     rows = zip(diagram.values.tolist(), diagram.events.tolist(), strict=True)
     left = int((~diagram.settled).sum())
     open_ = f"; {left} of them without a period seen in at most {diagram.settle} impacts" if left else ""
@@ -255,14 +247,13 @@ def regions_command(output: str, as_json: bool, **options: Any) -> None:
     model = take_model(options)
     from singimpact.case_pools import processes
     from singimpact.dynamics.regions import OF, regions
-    from singimpact.scenes.basins_picture import draw_regions
 
     if of not in OF:
         raise refuse("--of", of, ", ".join(OF))
     both = tuple(zip(low, high, strict=True))
     with processes(workers) as pool:
         result = regions(model, over, both, of, size, (*start, wall), impacts, executor=pool, output=keep)
-    save(draw_regions(result).figure, output)
+    save(scenes.draw_regions(result).figure, output)
     if result.values is not None:
         values, text = result.as_dict(), repr(result)
     else:
@@ -288,12 +279,9 @@ def ensemble_command(csv: str | None, as_json: bool, output: str | None, **optio
     model = take_model(options)
     import numpy as np
 
-    from singimpact.dynamics.ensemble import ensemble
-    from singimpact.surface.curve import window_ends
-
     rng = np.random.default_rng(seed)
-    states = [rng.uniform(*window_ends(name, ends), size) for name, ends in (("tau", tau), ("v", v))]
-    result = ensemble(model, *states, until=until, wall=wall)
+    states = [rng.uniform(*surface.window_ends(name, ends), size) for name, ends in (("tau", tau), ("v", v))]
+    result = si.ensemble(model, *states, until=until, wall=wall)
     if csv is not None:
         result.to_csv(csv)
     rate, error = result.escape_rate()

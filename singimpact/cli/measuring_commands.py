@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+import singimpact as si
+from singimpact import bench
 from singimpact.cli.model_options import model_options, take_model
 from singimpact.cli.output import (
     as_json_text,
@@ -107,14 +109,11 @@ def bench_command(
     `--family between-walls` has the solver of 60 digits for models with two walls, `--family plastic`
     for releases from rest with restitution 0. The exit code is 1 if an impact is wrong.
     """
-    from singimpact.bench.groups import GROUPS, usual
-    from singimpact.bench.measuring import FULL, QUICK
-
-    effort = QUICK if quick else FULL
+    effort = bench.QUICK if quick else bench.FULL
     if form == "page" and groups:
         raise InputError(f"--format page is not accepted with {', '.join(groups)}: the page has the group public alone")
-    chosen = ["public"] if form == "page" else list(dict.fromkeys(groups)) or usual(effort)
-    require_known("group", chosen, (*GROUPS, "states"))
+    chosen = ["public"] if form == "page" else list(dict.fromkeys(groups)) or bench.usual(effort)
+    require_known("group", chosen, (*bench.GROUPS, "states"))
     if store and "limit" not in chosen:
         raise InputError(
             f"--store is not accepted with {', '.join(chosen)}: give the group limit, whose ratios it keeps"
@@ -129,21 +128,17 @@ def bench_command(
         wrong |= states_wrong
         texts.append(text)
     if directory is not None:
-        from singimpact.bench.report import plotted
-
         for table in tables:
-            save(plotted(table), directory / f"bench-{table.group}.png")
+            save(bench.plotted(table), directory / f"bench-{table.group}.png")
     emit(as_json_text(values) if as_json else "\n\n".join(texts), output)
     if wrong:
         sys.exit(1)
 
 
 def _measured(chosen: list[str], effort: Effort) -> list[Measured]:
-    from singimpact.bench.groups import measured
-
     with ProgressLine() as line:
         return [
-            measured(name, effort, lambda text, at=at: line.show(at, len(chosen), text))  # type: ignore[misc]
+            bench.measured(name, effort, lambda text, at=at: line.show(at, len(chosen), text))  # type: ignore[misc]
             for at, name in enumerate(chosen)
         ]
 
@@ -163,9 +158,7 @@ def _is_over(tables: list[Measured], store: bool) -> bool:
 
 def _joined(found: list[Measured]) -> dict[str, Any]:
     """One list of rows and of skipped peers for all groups."""
-    from singimpact.bench.report import as_data
-
-    parts = [as_data(each) for each in found]
+    parts = [bench.as_data(each) for each in found]
     return {
         "rows": [row for part in parts for row in part["rows"]],
         "skipped": sorted({name for part in parts for name in part["skipped"]}),
@@ -176,11 +169,10 @@ def _joined(found: list[Measured]) -> dict[str, Any]:
 def _page(public: Measured, output: str | None) -> str:
     """The page of the documentation; its numbers and its picture are written beside it."""
     from singimpact.bench.page import as_csv, page, table
-    from singimpact.bench.report import plotted
 
     if output is not None:
         write_text(Path(output).with_suffix(".csv"), as_csv(public.rows))
-        save(plotted(public), Path(output).with_suffix(".png"))
+        save(bench.plotted(public), Path(output).with_suffix(".png"))
     command = ["git", "-C", str(Path(__file__).parent), "rev-parse", "HEAD"]
     answer = subprocess.run(command, capture_output=True, text=True, check=False)
     return page(markdown(*table(public.rows)), answer.stdout.strip() or "unknown")
@@ -211,7 +203,6 @@ def stress_command(
 
     The exit code is 1 if an error exceeds 100 units of condition times epsilon, or a status is wrong.
     """
-    from singimpact.bench.page import stress_page
     from singimpact.bench.stress.table import NOTE, POINTS, QUICK, as_data, chosen, stressed, table, worst_states
 
     pairs = chosen(functions, limit)
@@ -220,7 +211,7 @@ def stress_command(
     laid_out = columns if form == "text" else markdown
     text = "\n\n".join([laid_out(*table(cells)), NOTE, laid_out(*worst_states(cells))])
     if form == "page":
-        text = stress_page(text)
+        text = bench.stress_page(text)
     emit(as_json_text({"quick": quick, "cells": as_data(cells)}) if as_json else text, output)
     if any(cell.failed for cell in cells):
         sys.exit(1)
@@ -241,9 +232,8 @@ def selftest_command(
     MODEL is a TOML file, as for --model. The exit code is 1 if a result is wrong.
     """
     osc = take_model(options, file)
-    from singimpact.bench.selftest.run import selftest
 
-    report = selftest(osc, states=states, seed=seed)
+    report = si.selftest(osc, states=states, seed=seed)
     give({"model": osc.to_dict(), **report.as_data()}, str(report), as_json, output)
     if report.wrong:
         sys.exit(1)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+import singimpact as si
 from singimpact.cli.output import choice_option
 from singimpact.inputs import InputError
 
@@ -140,12 +141,10 @@ def take_orbits(
 
 def take_branches(orbits: list[PeriodicOrbit], over: str, ends: tuple[str, str] | None, points: int) -> list[Branch]:
     """Branches through orbits, each once."""
-    from singimpact.branches.branch import branch
-
     found: list[Branch] = []
     for orbit in orbits:
         if not any(on_branch(orbit, each) for each in found):
-            found.append(branch(orbit, over, ends, points=points))
+            found.append(si.branch(orbit, over, ends, points=points))
     return found
 
 

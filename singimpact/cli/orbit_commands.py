@@ -5,6 +5,7 @@ from typing import Any
 
 import click
 
+import singimpact as si
 from singimpact.cli.model_options import model_options, take_model, wall_option
 from singimpact.cli.output import (
     PICTURES,
@@ -46,7 +47,12 @@ def map_command(
     Numbers may be expressions such as pi/2.8.
     """
     oscillator = take_model(options)
-    states = _paired(taus, vs)
+    count = max(len(taus), len(vs))
+    if min(len(taus), len(vs)) not in (1, count):
+        raise InputError(
+            f"{len(taus)} --tau and {len(vs)} --v do not pair: give one of each, or as many, or one of one kind"
+        )
+    states = list(zip(taus * (count // len(taus)), vs * (count // len(vs)), strict=True))
     keywords: dict[str, Any] = {"digits": digits, "horizon": horizon, "wall": wall}
     step = oscillator.impact_map(
         [tau for tau, _ in states], [v for _, v in states], **{key: value for key, value in keywords.items() if value}
@@ -66,15 +72,6 @@ def map_command(
         if walls is not None:
             steps[at]["wall"] = walls[at]
     give({"model": oscillator.to_dict(), "steps": steps}, _steps_table(states, rows, walls), as_json, output)
-
-
-def _paired(taus: tuple[str, ...], vs: tuple[str, ...]) -> list[tuple[str, str]]:
-    count = max(len(taus), len(vs))
-    if min(len(taus), len(vs)) not in (1, count):
-        raise InputError(
-            f"{len(taus)} --tau and {len(vs)} --v do not pair: give one of each, or as many, or one of one kind"
-        )
-    return list(zip(taus * (count // len(taus)), vs * (count // len(vs)), strict=True))
 
 
 def _steps_table(states: list[tuple[str, str]], rows: list[list[Any]], walls: list[str] | None) -> str:
@@ -216,9 +213,7 @@ def threshold_command(
     With two walls the status is other_wall where a flight meets the other one from a lower velocity on, which is given.
     """
     osc = take_model(options)
-    from singimpact.dynamics.threshold import threshold
-
-    limit = threshold(osc.seen_from(wall), tau, digits=digits, impacts=impacts)
+    limit = si.threshold(osc.seen_from(wall), tau, digits=digits, impacts=impacts)
     status = Status(int(limit.status))
     enclosure = limit.certified.as_dict() if limit.certified else {}
     speed, error = number_text(limit.v, digits), float(limit.error)
@@ -246,9 +241,7 @@ def lyapunov_command(
     An orbit that comes to rest again and again is superstable: its exponents are -inf.
     """
     osc = take_model(options)
-    from singimpact.dynamics.lyapunov import lyapunov
-
-    result = lyapunov(osc, tau, v, impacts, transient=transient)
+    result = si.lyapunov(osc, tau, v, impacts, transient=transient)
     status = Status(int(result.status))
     values = result.as_dict()
     numbers = {"exponents": result.exponents, "error": result.error, "per impact": result.per_impact}

@@ -1,21 +1,36 @@
-"""Commands that show a model: scene, classify, explore."""
+"""Commands that show a model: scene, classify, explore; and `figure`, the paper's figures from computed data."""
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
+from time import process_time
 from typing import TYPE_CHECKING, Any, TypeGuard
 
 import click
 
-from singimpact import cache
+from singimpact import cache, paper, scenes, surface
 from singimpact.cli.model_options import model_options, take_model, wall_option
-from singimpact.cli.output import as_json_text, columns, emit, give, kept_at, output_options, picture_option, save
-from singimpact.inputs import InputError
+from singimpact.cli.output import (
+    PICTURES,
+    as_json_text,
+    columns,
+    emit,
+    give,
+    kept_at,
+    output_options,
+    picture_option,
+    save,
+    save_once,
+)
+from singimpact.inputs import InputError, refuse, require
+from singimpact.paper.figures import ACCEPTED, BEYOND, FIGURES, kept_picture
 from singimpact.progress import ProgressLine
-from singimpact.store import require_writable, write_text
+from singimpact.store import folder, require_writable, write_text
 
 if TYPE_CHECKING:
     from singimpact.branches.transitions import Interval, OrbitTransitions
+    from singimpact.impact_oscillator import ImpactOscillator
     from singimpact.scenes.clearance_frames import ClearanceFilm
     from singimpact.surface.classification import Classification
     from singimpact.surface.outline_transitions import Transitions
@@ -32,10 +47,8 @@ def scene_command(file: str, output: str, as_json: bool) -> None:
     outline, discontinuities, gamma, stable-manifolds, foliation, orbits. Of a model with two walls the file names one,
     wall = "upper". What is computed, what it took and what came from the cache is printed.
     """
-    from singimpact.scenes.scene import DPI, Scene
-
-    scene = Scene.read(file)
-    save(scene.draw().figure, output, dpi=DPI)
+    scene = scenes.Scene.read(file)
+    save(scene.draw().figure, output, dpi=scenes.DPI)
     report = {"output": str(Path(output)), **scene.report()}
     rows = [[name, str(report["curves"][name]), f"{time:.3f}"] for name, time in report["seconds_by_layer"].items()]
     table = columns(["layer", "curves", "seconds"], rows) if rows else "no layers"
@@ -91,21 +104,25 @@ def classify_command(
     if orbits is not None and over is None:
         raise InputError("--orbits needs the number that is varied: --over NAME --between LOW HIGH")
     from singimpact.studies import interval
-    from singimpact.surface.classification import classify
 
     swans_between = interval(between) if between is not None and over in (None, "clearance") else None
-    points = classify(oscillator.seen_from(wall), window_tau, window_t, swans_between)
+    points = surface.classify(oscillator.seen_from(wall), window_tau, window_t, swans_between)
     changes = None if over is None else _transitions(oscillator, wall, over, between, points.t, orbits)
     values = {"model": oscillator.to_dict(), **_as_listed(points, over, changes)}
     give(values, _text(points, over, changes), as_json, output)
 
 
-def _transitions(oscillator: Any, wall: str | None, over: str, between: Any, t: Any, orbits: int | None) -> Transitions:
+def _transitions(
+    oscillator: ImpactOscillator,
+    wall: str | None,
+    over: str,
+    between: tuple[str, str],
+    t: tuple[str, str] | None,
+    orbits: int | None,
+) -> Transitions:
     """Without orbits nothing of branches is loaded, which takes 0.2 s."""
     if orbits is None:
-        from singimpact.surface.outline_transitions import at_wall
-
-        return at_wall(oscillator, wall, over, between, t)
+        return surface.at_wall(oscillator, wall, over, between, t)
     from singimpact.branches.transitions import transitions as with_orbits
 
     return with_orbits(oscillator, over, between, t, orbits=orbits, wall=wall)
@@ -207,18 +224,14 @@ def explore_command(
     stored = kept_at(("explore", oscillator, between, points), ("contourpy",))
     page = cache.recall(stored)
     if page is None:
-        from singimpact.scenes.explore import explore_page
-
-        page = explore_page(_film(oscillator, between, points)).encode()
+        page = scenes.explore_page(_film(oscillator, between, points)).encode()
         cache.keep(stored, page)
     _show(page.decode(), file)
 
 
-def _film(oscillator: Any, between: tuple[str, str] | None, points: int) -> ClearanceFilm:
-    from singimpact.scenes.clearance_frames import clearance_film
-
+def _film(oscillator: ImpactOscillator, between: tuple[str, str] | None, points: int) -> ClearanceFilm:
     with ProgressLine() as line:
-        return clearance_film(oscillator, between, points, line.show)
+        return scenes.clearance_film(oscillator, between, points, line.show)
 
 
 def _place(html: str | None, output: str | None) -> str | None:
@@ -237,7 +250,6 @@ def _show(page: str, file: str | None) -> None:
         return
     import tempfile
     import webbrowser
-    from pathlib import Path
 
     # the browser reads the file after this command has ended, so it is left to the system's cleaning
     shown = Path(tempfile.mkdtemp(prefix="singimpact-")) / "explore.html"
@@ -264,3 +276,77 @@ def _told(film: ClearanceFilm) -> dict[str, Any]:
         "frames": frames,
         "flights": film.flights,
     }
+
+
+# Figures of the paper and beyond it.
+
+OTHER_PICTURES = (".gif", ".jpg", ".jpeg", ".eps", ".ps", ".tif", ".tiff", ".webp", ".bmp")  # no folder is meant
+DPI = 200  # of a PNG: figures are as small as they are printed
+
+
+@click.command()
+@click.argument("which", metavar="N|all|beyond")
+@click.option(
+    "-o",
+    "--output",
+    metavar="DIR",
+    default=".",
+    show_default=True,
+    help="A folder for the pictures, or for one figure a file ending in .png, .pdf or .svg.",
+)
+@click.option("--format", "kind", type=click.Choice(["png", "pdf", "svg"]), default="png", show_default=True)
+@click.option("--serif", is_flag=True, help="Serif letters (STIX), as in a journal.")
+@click.option("--dark", is_flag=True, help="Light lines on a dark ground.")
+@click.option("--data", is_flag=True, help="Write the curves as JSON beside each picture.")
+@click.option("--json", "as_json", is_flag=True, help="Print the written files and the CPU time in s as JSON.")
+def figure_command(which: str, output: str, kind: str, serif: bool, dark: bool, data: bool, as_json: bool) -> None:
+    """Draw figure N of the paper, 1 to 17, or all, each computed from an oscillator, and list the claims that it shows.
+
+    B1 to B11 are figures of what is beyond the paper; `beyond` draws them all.
+
+    Letters are 8 points high at the size of the file, which is at most 6.9 inches wide.
+
+    What a figure shows is kept in the cache as numbers: a run that was cut off goes on where it was.
+    """
+    numbers = _figures(which)
+    targets, written = _targets(output, numbers, kind), []
+    with ProgressLine() as line:
+        for done, number in enumerate(numbers):
+            line.show(done, len(numbers), f"figure {number}")
+            start, target = process_time(), targets[done]
+            title, claims = save_once(("figure", number, serif, dark), target, partial(_made, number, serif, dark), DPI)
+            if data:
+                write_text(target.with_suffix(".json"), as_json_text(kept_picture(number).to_dict()) + "\n")
+            written.append((number, title, claims, str(target), round(process_time() - start, 3)))
+    if as_json:
+        keys = ("figure", "title", "claims", "file", "seconds")
+        click.echo(as_json_text({"figures": [dict(zip(keys, path, strict=True)) for path in written]}))
+    else:
+        for _, title, claims, file, _ in written:
+            click.echo(f"{file}  {title}" + (f" ({', '.join(claims)})" if claims else ""))
+
+
+def _made(number: int | str, serif: bool, dark: bool) -> tuple[Any, Any]:
+    picture = kept_picture(number)
+    return paper.drawn(picture, serif, dark), [picture.title, list(picture.claims)]
+
+
+def _targets(output: str, numbers: list[int | str], kind: str) -> list[Path]:
+    """Where each figure goes; the folder is there."""
+    suffix = Path(output).suffix.lower()
+    if suffix in OTHER_PICTURES and not Path(output).is_dir():
+        raise refuse("output", output, "a folder, or for one figure a file name ending in .png, .pdf or .svg")
+    if suffix not in PICTURES:
+        return [folder(output) / f"figure{str(number).zfill(2)}.{kind}" for number in numbers]
+    require(len(numbers) <= 1, "output", output, "a folder: these are several figures")
+    require_writable(output)
+    return [Path(output)]
+
+
+def _figures(which: str) -> list[int | str]:
+    if which in ("all", "beyond"):
+        return [*FIGURES] if which == "all" else [*BEYOND]
+    if which in BEYOND:
+        return [which]
+    require(which in map(str, FIGURES), "figure", which, f"{ACCEPTED}, or all, or beyond")
+    return [int(which)]

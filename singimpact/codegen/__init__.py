@@ -8,16 +8,4 @@ Not here: the expressions themselves (`algebra`), what a kernel is for (`flights
 
 from singimpact.handed_on import names_of
 
-_FILES = {
-    "javascript": "translated",
-    "lowering": "REAL WHOLE Unsupported lowered",
-    "object_code": "emitted loaded",
-    "over_lists": "FUNCTIONS",
-    "polynomial_source": "module_source",
-    "radii": (
-        "atan_radius bell_radius circular_radius exp_radius log_of_square_radius log_radius power_of_square_radius "
-        "power_radius softplus_radius tan_radius tanh_radius whole_power_radius"
-    ),
-    "taylor_recurrence": "recurrence",
-}
-__getattr__ = names_of(__name__, _FILES)
+__getattr__ = names_of(__name__)

@@ -5,10 +5,4 @@ Not here: pictures (`scenes`), the mathematics that is shown (`theory`), the wor
 
 from singimpact.handed_on import names_of
 
-_FILES = {
-    "coq_files": "KINDS LEMMAS Writer coq_file",
-    "coq_flights": "coq_flight",
-    "document_steps": "CompileError Mark Section Step claims_of compiled equations_of",
-    "rendering": "PAGE as_data as_files as_latex as_markdown as_text latex_text lines_of width",
-}
-__getattr__ = names_of(__name__, _FILES)
+__getattr__ = names_of(__name__)

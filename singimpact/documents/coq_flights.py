@@ -13,16 +13,13 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.balls import BITS_A_DIGIT
-from singimpact.algebra.expressions import Expression, names_in
-from singimpact.algebra.numbers import as_float, as_fraction, constant
+from singimpact.algebra import BITS_A_DIGIT, Expression, as_float, as_fraction, constant, names_in
 from singimpact.branches.krawczyk import enclosed_orbit
 from singimpact.documents.rendering import environment
 from singimpact.flights.flight_path import path
 from singimpact.flights.impact_map import impact_map
 from singimpact.inputs import InputError, need
-from singimpact.oscillator.linear import linear_form
-from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator import Oscillator, linear_form
 
 LIBRARY = Path(__file__).parent / "templates" / "flights.v"
 SAMPLES = 400  # of the velocity on a flight, among which the end of the rise and the start of the fall are chosen

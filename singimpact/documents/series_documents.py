@@ -13,20 +13,33 @@ import sympy
 from mpmath.libmp import to_str
 from sympy.printing.str import StrPrinter
 
-from singimpact.algebra.balls import Balls
-from singimpact.algebra.precision import balls_at
+from singimpact.algebra import Balls, balls_at
 from singimpact.codegen.polynomial_source import RATIO_SOURCE, Coefficient, Exponents, function_source, module_source
 from singimpact.documents.document_steps import Section, Step
 from singimpact.inputs import InputError, need, unknown
 from singimpact.oscillator.model import Oscillator
-from singimpact.theory import chatter_limit, dynamics_on_gamma, fibre, gamma, normal_form, v_c
-from singimpact.theory.contact_points import Place, place, points_of
-from singimpact.theory.formulas import LIMITS
-from singimpact.theory.frozen import COMMAND, curve_functions, sheet_functions
-from singimpact.theory.multipliers import r_of_lambda
-from singimpact.theory.notation import latex
-from singimpact.theory.plane_forms import HIGHEST, HIGHEST_NUMBERS, FoldForm
-from singimpact.theory.power_series import TRUST, PowerSeries
+from singimpact.theory import (
+    COMMAND,
+    HIGHEST,
+    HIGHEST_NUMBERS,
+    LIMITS,
+    TRUST,
+    FoldForm,
+    Place,
+    PowerSeries,
+    chatter_limit,
+    curve_functions,
+    dynamics_on_gamma,
+    fibre,
+    gamma,
+    latex,
+    normal_form,
+    place,
+    points_of,
+    r_of_lambda,
+    sheet_functions,
+    v_c,
+)
 
 NAMES = {0: "generic", 1: "tangency", 2: "swan"}
 POINTS = ("a regular point", "a tangency point with $a' > 0$", "a swan point with $a'' < 0$")  # where gamma ends

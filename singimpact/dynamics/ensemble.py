@@ -13,7 +13,7 @@ from singimpact.dynamics.families import OscillatorFamily, beside_members
 from singimpact.dynamics.lives import GRAZE, IMPACT, SETTINGS as LIFE, Lives, Stretch
 from singimpact.flights.flight_path import along
 from singimpact.flights.members import Members
-from singimpact.inputs import checked_keywords, refuse, require_memory, takes_two_walls, whole
+from singimpact.inputs import checked_keywords, refuse, require, require_memory, takes_two_walls, whole
 from singimpact.oscillator.model import Oscillator
 from singimpact.result import Result, default_axes
 from singimpact.status import Status, status_array
@@ -216,8 +216,7 @@ def ensemble(
     """
     if not isinstance(osc, Oscillator | OscillatorFamily):
         raise refuse("osc", osc, "an ImpactOscillator, or a family osc.over(...)")
-    if (until is None) == (impacts is None):
-        raise refuse("until", until, "a time, or impacts= in its place")
+    require((until is None) != (impacts is None), "until", until, "a time, or impacts= in its place")
     end = as_float(constant("until", until)) if until is not None else np.inf
     most = whole("impacts", impacts, 0, 10**9) if impacts is not None else 10**9
     noise, generator = _noise_of({} if random is None else random)

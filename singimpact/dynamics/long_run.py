@@ -88,7 +88,10 @@ def futures(
     rows = []
     for phase, wall in lifted:
         model = osc.mirrored if wall else osc
-        begin = _lifted(model, phase)
+        back = as_float(model.period) / 64
+        while acceleration(model, np.array([phase - back]))[0] >= 0:
+            back /= 2
+        begin = release(model, phase - back)
         first = orbit(model, begin, 0, impacts=1)
         if first.kind.tolist() != ["start", "impact"]:
             code = (GONE if np.isinf(first.end) else AWAY) if first.phases[-1][0] == "no_return" else OTHER
@@ -110,13 +113,6 @@ def _rest_of(model: Oscillator, start: float) -> float:
         if lifted.size:
             return float(lifted[0])
     return np.nan
-
-
-def _lifted(model: Oscillator, phase: float) -> float:
-    back = as_float(model.period) / 64
-    while acceleration(model, np.array([phase - back]))[0] >= 0:
-        back /= 2
-    return release(model, phase - back)
 
 
 def settled(motions: list[Future], start: int, period: float) -> tuple[float, ...]:

@@ -167,8 +167,7 @@ def regions(
     names = tuple(over)
     require(len(names) == 2 and names[0] != names[1], "over", over, "two different numbers of the model")
     osc = reduce(with_number, names, osc)
-    if osc.period is None:
-        raise refuse("model", osc, "one with a period")
+    require(osc.period is not None, "model", osc, "one with a period")
     if between is None or np.shape(between) != (2, 2):
         raise refuse("between", between, "two intervals, ((low, high), (low, high)), one for each number")
     if not callable(of) and of not in OF:

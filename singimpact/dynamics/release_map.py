@@ -14,7 +14,7 @@ from singimpact.dynamics.lift_off import next_lift_offs
 from singimpact.flights.impact_map import impact_map
 from singimpact.flights.response import response
 from singimpact.flights.states import States
-from singimpact.inputs import checked_keywords, refuse
+from singimpact.inputs import checked_keywords, refuse, require
 from singimpact.oscillator.model import Oscillator, require_model
 from singimpact.result import Result, value_in_words
 from singimpact.status import Status, status_array
@@ -92,8 +92,7 @@ def release_map(osc: Oscillator, tau: Any = None) -> ReleaseMap:
     require_model("osc", osc)
     if not osc.plastic:
         raise refuse("restitution", osc.restitution, "0: the motion after an impact depends on its velocity otherwise")
-    if osc.period is None:
-        raise refuse("model", osc, "one with a period: release phases are those of the forcing")
+    require(osc.period is not None, "model", osc, "one with a period: release phases are those of the forcing")
     period = as_float(osc.period)
     states = States.of(osc, np.linspace(0, period, PHASES, endpoint=False) if tau is None else tau, 0.0)
     times, presses = states.tau, _presses(states)

@@ -11,7 +11,7 @@ import numpy as np
 
 from singimpact.algebra.numbers import Array
 from singimpact.flights.results import Flight
-from singimpact.inputs import InputError, require_memory
+from singimpact.inputs import InputError, need, require_memory
 from singimpact.status import status_array
 
 # Numbers that few flights have
@@ -43,8 +43,7 @@ def many(tau: Any, v: Any, out: Mapping[str, Array] | None = None, digits: int |
     (True, False)
     """
     if digits is not None:
-        if out is not None:
-            raise InputError("out= takes doubles: leave it away with digits=")
+        need(out is None, InputError("out= takes doubles: leave it away with digits="))
         return False
     if out is not None:
         return True

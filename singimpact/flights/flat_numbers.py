@@ -13,21 +13,9 @@ from typing import Any
 
 import numpy as np
 
+from singimpact.algebra import expressions
 from singimpact.algebra.balls import Balls, as_rational
-from singimpact.algebra.expressions import (
-    Expression,
-    Name,
-    Pi,
-    Root,
-    add,
-    evaluate,
-    multiply,
-    names_in,
-    negate,
-    number,
-    substitute,
-    subtract,
-)
+from singimpact.algebra.expressions import Expression
 from singimpact.algebra.numbers import Array, as_float, rational_near
 from singimpact.codegen.scalar import scalar
 from singimpact.codegen.taylor_recurrence import Recurrence
@@ -93,9 +81,9 @@ class Twofolds:
         return Twofold.near(value)
 
     def pi(self) -> Twofold:
-        return Twofold.near(rational_near(Pi(), 256))
+        return Twofold.near(rational_near(expressions.Pi(), 256))
 
-    def root(self, tree: Root) -> Twofold:
+    def root(self, tree: expressions.Root) -> Twofold:
         return Twofold.near(rational_near(tree, 256))
 
     def power(self, base: Twofold, exponent: Fraction) -> Twofold:
@@ -129,12 +117,12 @@ def _each(argument: Twofold, work: Callable[[Balls, Any], Any]) -> Twofold:
 
 def value_of(tree: Expression, numbers: Mapping[str, Twofold]) -> Twofold:
     """A tree of constants and letters; without letters the doubles nearest to it, inf or nan where there is none."""
-    if not names_in(tree):
+    if not expressions.names_in(tree):
         high = as_float(tree)
         low = float(rational_near(tree, 256) - Fraction(high)) if np.isfinite(high) else 0.0
         return Twofold(np.float64(high), np.float64(low))
     with np.errstate(all="ignore"):  # what is no number is refused by who reads it
-        return evaluate(tree, numbers, TWOFOLDS)  # type: ignore[no-any-return]
+        return expressions.evaluate(tree, numbers, TWOFOLDS)  # type: ignore[no-any-return]
 
 
 # ---- the numbers of a model
@@ -144,7 +132,7 @@ def gap_of(osc: Oscillator) -> tuple[float, float]:
     """The distance of both walls as a double, and what the double leaves out; inf and 0 of a model with one wall."""
     if osc.upper is None:
         return np.inf, 0.0
-    gap = value_of(subtract(osc.upper, osc.clearance), {})
+    gap = value_of(expressions.subtract(osc.upper, osc.clearance), {})
     return float(gap.high), float(gap.low)
 
 
@@ -207,7 +195,7 @@ class Numbers:
 
     def value(self, tree: Expression) -> Twofold:
         """A tree of constants and letters."""
-        return value_of(substitute(tree, self._kept), self._values)
+        return value_of(expressions.substitute(tree, self._kept), self._values)
 
     def column(self, tree: Expression) -> Array:
         """The nearest doubles to a tree, one for each member."""
@@ -216,15 +204,15 @@ class Numbers:
     def place(self, above: int) -> Expression:
         """The clearance, or minus the upper wall: the clearance of the model with x -> -x."""
         name = UPPER[0] if above else CLEARANCE
-        tree = Name(name) if name in self.letters else getattr(self.osc, name)
-        return negate(tree) if above else tree
+        tree = expressions.Name(name) if name in self.letters else getattr(self.osc, name)
+        return expressions.negate(tree) if above else tree
 
     def law(self, above: int) -> tuple[str, tuple[Expression, ...]]:
         """The text of a law rho, empty for a constant, and its constants."""
         side, name = self.sides[above], UPPER[1] if above and UPPER[1] in self.osc.to_dict() else RESTITUTION
-        if names_in(side.restitution):
+        if expressions.names_in(side.restitution):
             return scalar(rho_of(side.restitution), ("v",), LAW)
-        return "", (Name(name) if name in self.letters else side.restitution,)
+        return "", (expressions.Name(name) if name in self.letters else side.restitution,)
 
     def slope(self, above: int) -> Array:
         """r = -rho'(0) of each member."""
@@ -295,7 +283,7 @@ def _one_wall(
     coarse = 10 * allowance.epsilon if allowance.epsilon > EPSILON else 0.0
     gap = Twofold(np.inf, 0.0)
     if osc.upper is not None:
-        gap = numbers.value(negate(add(numbers.place(0), numbers.place(1))))
+        gap = numbers.value(expressions.negate(expressions.add(numbers.place(0), numbers.place(1))))
     rules = (allowance.horizon, LIMITS.longest if flow is None else allowance.steps, order, short,
              LIMITS.safety * (EPSILON if flow is None else allowance.epsilon), LIMITS.likely,
              max(LIMITS.rough[0], coarse), max(LIMITS.rough[1], coarse), pace,
@@ -316,10 +304,13 @@ def _linear_numbers(numbers: Numbers, above: int, sizes: Array, lengths: tuple[i
     """The numbers of linear models, and their largest rates; lengths : of Taylor coefficients, and rows of tables."""
     form = form_of(numbers.osc.force(numbers.letters), numbers.osc.forcing(numbers.letters))
     assert form is not None
-    count, at, sign = len(form.harmonics), layout.SCALARS, number(-1 if above else 1)
+    count, at, sign = len(form.harmonics), layout.SCALARS, expressions.number(-1 if above else 1)
     sizes[[layout.WAVES, layout.ROWS, layout.ROOM]] = count, lengths[1], max(lengths[0], 2 * count + 2)
     flat = np.zeros((numbers.size, layout.linear_length(sizes)))
-    steady = add(multiply(sign, form.constant), negate(multiply(form.stiffness, numbers.place(above))))
+    steady = expressions.add(
+        expressions.multiply(sign, form.constant),
+        expressions.negate(expressions.multiply(form.stiffness, numbers.place(above))),
+    )
     trees = {at: form.damping, at + 1: form.stiffness, at + 2: steady}
     d, k = numbers.column(form.damping), numbers.column(form.stiffness)
     rates = [np.abs(numbers.column(wave.rate)) for wave in form.harmonics]
@@ -331,7 +322,7 @@ def _linear_numbers(numbers: Numbers, above: int, sizes: Array, lengths: tuple[i
     for slot, reach in ((8, TABLES.reach), (9, TABLES.batch_reach)):
         flat[:, at + slot] = steps_with_few_bits(reach / np.where(fastest == 0, TABLES.slowest, fastest), TABLES.bits)
     for j, wave in enumerate(form.harmonics):
-        parts = wave.rate, wave.phase, multiply(sign, wave.cosine), multiply(sign, wave.sine)
+        parts = wave.rate, wave.phase, expressions.multiply(sign, wave.cosine), expressions.multiply(sign, wave.sine)
         trees |= dict(enumerate(parts, at + 10 + 4 * j))
     for slot, tree in trees.items():
         value = numbers.value(tree)

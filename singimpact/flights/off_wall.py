@@ -32,7 +32,7 @@ from singimpact.flights.results import SCALAR_STATUS
 from singimpact.flights.states import States, as_written, require_room
 from singimpact.flights.undecided import Fates, escapes, refined_hit
 from singimpact.flights.walls import at_walls
-from singimpact.inputs import InputError, refuse
+from singimpact.inputs import InputError, refuse, require
 from singimpact.oscillator.model import Oscillator
 from singimpact.result import Result, in_words
 from singimpact.status import Cause, Status, status_array
@@ -205,8 +205,7 @@ def _heights(osc: Oscillator, places: Array) -> Array:
         ).reshape(places.shape)
     if heights.size and heights.min() < 0:
         behind = places[heights < 0].tolist()[0]
-        if osc.upper is not None:
-            raise refuse("x, or -x at the upper wall,", behind, "places between both walls")
+        require(osc.upper is None, "x, or -x at the upper wall,", behind, "places between both walls")
         raise refuse("x", behind, f"places at or above the wall, x >= {osc.clearance}")
     return heights
 

@@ -10,7 +10,7 @@ from singimpact.algebra.numbers import Array
 from singimpact.algebra.precision import negative
 from singimpact.flights.results import Flight
 from singimpact.flights.states import as_written
-from singimpact.inputs import InputError, refuse
+from singimpact.inputs import InputError, need, refuse
 from singimpact.oscillator.model import Oscillator
 from singimpact.status import Wall, status_array, wall_of
 
@@ -54,8 +54,7 @@ def at_walls(
         return fly(osc, *columns)
     if codes.all():
         return turned(fly(osc.mirrored, *columns), out)
-    if out is not None:
-        raise InputError("out= takes the results of states at one wall: give wall='lower' or wall='upper'")
+    need(out is None, InputError("out= takes the results of states at one wall: give wall='lower' or wall='upper'"))
     names = ("tau", "v") if len(columns) == 2 else tuple(f"column {k}" for k in range(len(columns)))
     try:
         codes, *states = np.broadcast_arrays(codes, *map(as_written, names, columns))

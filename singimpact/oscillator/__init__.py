@@ -5,10 +5,4 @@ Not here: points of the tau-axis (`contact`), motion (`flights`), a user's metho
 
 from singimpact.handed_on import names_of
 
-_FILES = {
-    "linear": "linear_form",
-    "moving_number": "value_of with_number",
-    "model": "FIELDS Oscillator fields_of read_fields",
-    "wall_acceleration": "acceleration",
-}
-__getattr__ = names_of(__name__, _FILES)
+__getattr__ = names_of(__name__)

@@ -166,18 +166,14 @@ def as_ball(osc: Oscillator, tau: Expression, order: int = 0) -> Any:
     """
     ball: Any = None
     for bits in BITS:
-        ball = _ball(osc, tau, order, bits)
+        # a large tau needs as many bits more as its exponent has
+        balls = Balls(bits + 64 + max(int(np.frexp(abs(as_float(tau)))[1]), 0))
+        ball = around(osc, balls.evaluate(tau, {}), order, balls)
         if ball == 0 or (ball.is_finite() and ball.rel_accuracy_bits() > 64):
             return ball
     if not ball.is_finite():
         raise NotSmooth(f"a_c is no finite number at tau = {tau!s:.40}: the model must be smooth there")
     return ball
-
-
-def _ball(osc: Oscillator, tau: Expression, order: int, bits: int) -> Any:
-    # a large tau needs as many bits more as its exponent has
-    balls = Balls(bits + 64 + max(int(np.frexp(abs(as_float(tau)))[1]), 0))
-    return around(osc, balls.evaluate(tau, {}), order, balls)
 
 
 def around(osc: Oscillator, start: Any, order: int, balls: Balls) -> Any:

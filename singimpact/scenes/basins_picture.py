@@ -8,10 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from singimpact.branches.transitions import BothSides
-from singimpact.dynamics.basins_of_attraction import Basins, ClassGrid
-from singimpact.dynamics.basins_over import BasinsOver
-from singimpact.dynamics.regions import Regions
-from singimpact.inputs import refuse
+from singimpact.dynamics import Basins, BasinsOver, ClassGrid, Regions
+from singimpact.inputs import require
 from singimpact.oscillator.moving_number import value_of, with_number
 from singimpact.scenes import style
 from singimpact.scenes.label_places import legend_below, legend_entries
@@ -160,8 +158,7 @@ def draw_both_sides(sides: BothSides, axes: Any) -> Any:
     axes : two of matplotlib.
     """
     pair = np.ravel(axes)
-    if pair.size != 2:
-        raise refuse("axes", f"{pair.size} of them", "two: those before and after the transition")
+    require(pair.size == 2, "axes", f"{pair.size} of them", "two: those before and after the transition")
     for one, model, side, colors in zip(pair, sides.models, sides.basins, class_colors(sides.basins), strict=True):
         _draw(one, model, side, colors)
         value = value_of(with_number(model, sides.over), sides.over)

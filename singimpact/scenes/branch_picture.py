@@ -8,12 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from singimpact.algebra.numbers import Array
-from singimpact.branches.border import BorderOrbit
-from singimpact.branches.branch import Branch
-from singimpact.branches.cascade import Cascade, CascadeWindow
-from singimpact.branches.event_curve import EventCurve
+from singimpact.branches import BorderOrbit, Branch, Cascade, CascadeWindow, EventCurve, orbit_period
 from singimpact.branches.events import KINDS, Event, kind_of
-from singimpact.branches.solutions import orbit_period
 from singimpact.dynamics.bifurcation_diagram import Bifurcation
 from singimpact.inputs import InputError, refuse, require
 from singimpact.scenes import style as looks

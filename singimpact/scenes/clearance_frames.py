@@ -7,20 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.derivatives import derivative
-from singimpact.algebra.expressions import evaluate, names_in, number, substitute
-from singimpact.algebra.numbers import Array, as_float, compare
-from singimpact.algebra.rings import DOUBLES
-from singimpact.contact.points import is_polynomial
-from singimpact.contact.swans import SwanPoint, swan_points_over_clearance, swans_are_listed
+from singimpact.algebra import DOUBLES, Array, as_float, compare, derivative, evaluate, names_in, number, substitute
+from singimpact.contact import SwanPoint, is_polynomial, swan_points_over_clearance, swans_are_listed
 from singimpact.dynamics.invariant_arcs import grown_gamma
 from singimpact.inputs import refuse, whole
-from singimpact.oscillator.model import Oscillator, require_model, require_rebound
-from singimpact.oscillator.wall_acceleration import acceleration
+from singimpact.oscillator import Oscillator, acceleration, require_model, require_rebound
 from singimpact.studies import interval
-from singimpact.surface.classification import default_window
-from singimpact.surface.curve import Curve, Window
-from singimpact.surface.impact_surface import ImpactSurface
+from singimpact.surface import Curve, ImpactSurface, Window, default_window
 
 Span = tuple[float, float]
 

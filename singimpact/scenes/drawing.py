@@ -10,38 +10,26 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from singimpact.algebra.numbers import Array, as_float
-from singimpact.branches.border import BorderOrbit
-from singimpact.branches.branch import Branch
-from singimpact.branches.enclosed_crossing import EnclosedCrossing
-from singimpact.branches.event_curve import EventCurve
-from singimpact.branches.homoclinic import Crossings
-from singimpact.branches.horseshoe import CrossedSet, Horseshoe
-from singimpact.branches.manifold import Manifold
-from singimpact.branches.orbits import PeriodicOrbit
-from singimpact.branches.transitions import BothSides
-from singimpact.dynamics.basins_of_attraction import Basins
-from singimpact.dynamics.basins_over import BasinsOver
-from singimpact.dynamics.bifurcation_diagram import Bifurcation
-from singimpact.dynamics.fit import Fit
-from singimpact.dynamics.invariant_arcs import model_step
-from singimpact.dynamics.orbit import Orbit, Section
-from singimpact.dynamics.regions import Regions
-from singimpact.dynamics.release_map import ReleaseMap
-from singimpact.inputs import InputError, checked_keywords, refuse, takes_two_walls
-from singimpact.scenes import orbit_picture
-from singimpact.scenes.basins_picture import draw_basins, draw_basins_over, draw_both_sides, draw_regions
-from singimpact.scenes.branch_picture import (
-    bifurcation_sheet,
-    draw_bifurcation,
-    draw_border,
-    draw_branches,
-    draw_event_curves,
+from singimpact.branches import (
+    BorderOrbit,
+    BothSides,
+    Branch,
+    CrossedSet,
+    Crossings,
+    EnclosedCrossing,
+    EventCurve,
+    Horseshoe,
+    Manifold,
+    PeriodicOrbit,
 )
+from singimpact.dynamics import Basins, BasinsOver, Bifurcation, Fit, Orbit, Regions, ReleaseMap, Section, model_step
+from singimpact.inputs import InputError, checked_keywords, refuse, takes_two_walls
+from singimpact.scenes import branch_picture, orbit_picture
+from singimpact.scenes.basins_picture import draw_basins, draw_basins_over, draw_both_sides, draw_regions
 from singimpact.scenes.label_places import legend_below, legend_entries, legend_mark
 from singimpact.scenes.scene import Scene
 from singimpact.scenes.style import BLACK, BLUE, DASHES, GREEN, OPEN, ORANGE, PENS, WHITE, darken
-from singimpact.surface.curve import Curve
-from singimpact.surface.impact_surface import ImpactSurface
+from singimpact.surface import Curve, ImpactSurface
 
 # Pictures of W^s and W^u of saddles, of points where they cross, of certified crossings and of horseshoes.
 
@@ -290,7 +278,7 @@ def _sheet(thing: Any) -> Array:
         return np.array(orbit_picture.orbit_sheet(diagram, _figure(orbit_picture.SIZE)).axes, dtype=object)
     if not isinstance(diagram, Bifurcation):
         raise refuse("thing to plot as a sheet", type(diagram).__name__, "an orbit, or a diagram and branches over it")
-    return np.array(bifurcation_sheet(diagram, branches, _figure(SIZES[1])).axes, dtype=object)
+    return np.array(branch_picture.bifurcation_sheet(diagram, branches, _figure(SIZES[1])).axes, dtype=object)
 
 
 def _children(axes: Any) -> list[Any]:
@@ -318,7 +306,7 @@ def _drawn(thing: Any, axes: Axes, height: str) -> Any:
     several = list(thing) if isinstance(thing, list | tuple) else [thing]
     for kind, alone, new, draw in PICTURES:
         if isinstance(thing, kind) if alone else several and all(isinstance(item, kind) for item in several):
-            more = {"height": height} if draw in (draw_bifurcation, draw_branches) else {}
+            more = {"height": height} if draw in (branch_picture.draw_bifurcation, branch_picture.draw_branches) else {}
             return draw(thing if alone else several, new() if axes is None else axes, **more)
     raise refuse(
         "thing to plot",
@@ -365,7 +353,7 @@ UPRIGHT = partial(_new_axes, SIZES[1], 2, sharex=True, height_ratios=(3, 2))
 BESIDE = partial(_new_axes, (11.0, 5.2), 1, 2, sharey=True)
 # types, whether each is drawn alone or several in one picture, new axes, and the function that draws
 PICTURES: tuple[tuple[type, bool, New, Drawer], ...] = (
-    (Bifurcation, True, WIDE, draw_bifurcation),
+    (Bifurcation, True, WIDE, branch_picture.draw_bifurcation),
     (BothSides, True, BESIDE, draw_both_sides),
     (Crossings, True, HIGH, draw_crossings),
     (EnclosedCrossing, True, HIGH, draw_certified_crossing),
@@ -378,9 +366,9 @@ PICTURES: tuple[tuple[type, bool, New, Drawer], ...] = (
     (Basins, True, HIGH, draw_basins),
     (BasinsOver, True, HIGH, draw_basins_over),
     (Regions, True, HIGH, draw_regions),
-    (BorderOrbit, True, UPRIGHT, lambda border, axes: draw_border(border, *np.ravel(axes))),
-    (Branch, False, LOW, draw_branches),
+    (BorderOrbit, True, UPRIGHT, lambda border, axes: branch_picture.draw_border(border, *np.ravel(axes))),
+    (Branch, False, LOW, branch_picture.draw_branches),
     (Curve, False, WIDE, _curves),
-    (EventCurve, False, LOW, draw_event_curves),
+    (EventCurve, False, LOW, branch_picture.draw_event_curves),
     (Manifold, False, HIGH, draw_manifolds),
 )

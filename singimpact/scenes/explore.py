@@ -16,20 +16,14 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.derivatives import derivative
-from singimpact.algebra.expressions import Expression, names_in, negate, number, substitute
-from singimpact.algebra.numbers import Array, as_float
+from singimpact.algebra import Array, Expression, as_float, derivative, names_in, negate, number, substitute
 from singimpact.codegen import radii
 from singimpact.codegen.javascript import formula, translated
 from singimpact.codegen.scalar import scalar
-from singimpact.flights.horizons import horizon_of, reach_of
+from singimpact.flights import ACROSS, LIMITS, degree_for, horizon_of, numbers_of_flow, reach_of, recurrence_of
 from singimpact.flights.kernels import roots, steps, taylor
-from singimpact.flights.kernels.state import ACROSS
-from singimpact.flights.limits import LIMITS, degree_for
-from singimpact.flights.model_numbers import numbers_of_flow, recurrence_of
 from singimpact.inputs import checked_keywords, takes_two_walls, whole
-from singimpact.oscillator.model import Oscillator, require_model
-from singimpact.oscillator.rebound import rho_of
+from singimpact.oscillator import Oscillator, require_model, rho_of
 from singimpact.progress import ProgressLine
 from singimpact.scenes.clearance_frames import SETTINGS, ClearanceFilm, ClearanceFrame, clearance_film
 from singimpact.scenes.style import BLACK, BLUE, GREY, PENS, SHADE, WALL, WHITE, Pen, on_dark

@@ -16,12 +16,10 @@ from singimpact import cache
 from singimpact.dynamics.invariant_arcs import gammas_within, stable_manifold
 from singimpact.dynamics.orbit import orbit
 from singimpact.flights.results import counted
-from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.wall_acceleration import acceleration
+from singimpact.oscillator import Oscillator, acceleration
 from singimpact.status import Wall
 from singimpact.store import cache_folder
-from singimpact.surface.curve import STATES, Curve, Mark, Window
-from singimpact.surface.impact_surface import ImpactSurface
+from singimpact.surface import STATES, Curve, ImpactSurface, Mark, Window
 
 # Needs that are read from the cache; the rest costs no flight.
 STORED = ("lines", "beyond", "cut", "visible", "shadow", "gamma", "stable-manifolds", "foliation", "orbits")

@@ -14,9 +14,8 @@ import numpy as np
 
 from singimpact.algebra.numbers import Array, as_float
 from singimpact.branches.orbits import PeriodicOrbit
-from singimpact.dynamics.fit import Fit
+from singimpact.dynamics import Fit, ReleaseMap
 from singimpact.dynamics.orbit import Orbit, Section, orbit as flown
-from singimpact.dynamics.release_map import ReleaseMap
 from singimpact.flights.flight_path import path
 from singimpact.inputs import InputError, checked_keywords, refuse, require, takes_two_walls, whole
 from singimpact.scenes.label_places import legend_below, legend_entries
@@ -381,8 +380,7 @@ def animate(orbit: Orbit, between: tuple[float, float] | None = None, frames: in
         raise refuse("orbit", type(orbit).__name__, "an orbit of `osc.orbit`")
     first, last = float(orbit.tau[0]), max(shown_end(orbit), orbit.end)
     begin, end = (_since(orbit), shown_end(orbit)) if between is None else map(float, interval(between))
-    if not first <= begin < end <= last:
-        raise refuse("between", between, f"two times from {first:.6g} to {last:.6g}")
+    require(first <= begin < end <= last, "between", between, f"two times from {first:.6g} to {last:.6g}")
     times = np.linspace(begin, end, whole("frames", frames, 2, 10_000))
     heights = orbit.sample(times).x
     figure = Figure(figsize=(7.2, 3.2), dpi=80, layout="constrained")

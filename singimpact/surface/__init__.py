@@ -5,16 +5,4 @@ Not here: one flight (`flights`), orbits and invariant curves (`dynamics`), germ
 
 from singimpact.handed_on import names_of
 
-_FILES = {
-    "boxes_from_rest": "FlightFromRest Tangencies",
-    "classification": "classify",
-    "curve": "Curve Window",
-    "followed_rests": "FollowedRests",
-    "impact_surface": "ImpactSurface",
-    "outline_transitions": "Transitions transitions",
-    "proved_touches": "EnclosedTouches RestFlight doubts_left rest_flight",
-    "rest_flights": "RestFlights",
-    "swan_families": "Family swan_curves",
-    "two_rests": "linear_rests newton",
-}
-__getattr__ = names_of(__name__, _FILES)
+__getattr__ = names_of(__name__)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from singimpact.algebra.numbers import Array, as_float, constant
-from singimpact.inputs import refuse
+from singimpact.inputs import refuse, require
 
 SURFACE, STATES = ("tau", "t"), ("tau", "v")  # the axes of the two planes: launches with flight times, and launches
 
@@ -32,8 +32,7 @@ def window_ends(name: str, window: Any) -> tuple[float, float]:
     if not isinstance(window, tuple | list) or len(window) != 2:
         raise refuse(f"window of {name}", window, "two numbers, the lower end first")
     low, high = (as_float(constant(f"window of {name}", end)) for end in window)
-    if not low < high:
-        raise refuse(f"window of {name}", window, "two numbers, the lower end first")
+    require(low < high, f"window of {name}", window, "two numbers, the lower end first")
     return low, high
 
 

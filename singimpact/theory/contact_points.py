@@ -368,8 +368,7 @@ class LetteredModel:
 
     def _polynomial(self, order: int) -> Contact:
         """Without sympy, when f is a polynomial and the derivatives of a_c stay letters."""
-        if self.tau is not None:
-            raise ArithmeticError("tau is given")
+        need(self.tau is None, ArithmeticError("tau is given"))
         names = [derivative_name(k) for k in range(self.j, max(order, self.j + 1))]
         ring = SymbolRing((*names, *self.keep))
         a = {k: ring.symbol(name) * ring.rational(Fraction(1, factorial(k))) for k, name in enumerate(names, self.j)}

@@ -17,7 +17,7 @@ from singimpact.algebra.rings import DOUBLES, EXACT
 from singimpact.algebra.univariate import precision_of
 from singimpact.contact.contact import TASK, Contact, contact_order, derivative_name
 from singimpact.handed_on import sympy
-from singimpact.inputs import InputError, checked_keywords, refuse, require, whole
+from singimpact.inputs import InputError, checked_keywords, need, refuse, require, whole
 from singimpact.oscillator.model import require_smooth_rho
 from singimpact.theory.completion import by_velocity, rho_names, symbolic_completion, symbolic_curve
 from singimpact.theory.contact_points import LetteredModel, Place, ending_gamma, exact_contact, multiplier, place
@@ -242,8 +242,7 @@ def chatter_limit(
     if lettered is not None or model is None:
         return _with_letters("v", order, _symbolic_chatter(whole("order", order, 1, LIMITS.completion)), lettered)
     order = whole("order", order, 1, LIMITS.completion_numbers)
-    if tau is None:
-        raise InputError("tau is needed: give the time at which the first flight starts")
+    need(tau is not None, InputError("tau is needed: give the time at which the first flight starts"))
     where = place(model, 0, tau)
     require_smooth_rho(model, TASK)
     multiplier(0, model.slope_at_rest())

@@ -168,8 +168,7 @@ def grazing_map(order: int = 1, model: Any = None, at: Any = None, digits: int =
         _checked(order, j, MOST["symbols"])
         return _generic(j, order)
     require(isinstance(model, Oscillator), "model", model, "an ImpactOscillator")
-    if at is None:
-        raise refuse("at", at, "the time of the graze, at which a_c > 0 or has an even zero")
+    require(at is not None, "at", at, "the time of the graze, at which a_c > 0 or has an even zero")
     where = _graze(model, constant("at", at))
     _checked(order, where.j, MOST["numbers"])
     return _of_model(where, order, digits)

@@ -20,7 +20,7 @@ from singimpact.algebra.polynomials import Exponents
 from singimpact.algebra.rings import EXACT, SymbolRing
 from singimpact.contact.contact import Contact, contact_order, derivative_name
 from singimpact.germs import NormalForm, normal_form as reduced
-from singimpact.inputs import InputError, checked_keywords, refuse, whole
+from singimpact.inputs import InputError, checked_keywords, refuse, require, whole
 from singimpact.theory.completion import length_weight
 from singimpact.theory.contact_points import exact_contact, place
 from singimpact.theory.impact_sheet import Sheet, sheet
@@ -181,8 +181,7 @@ def normal_form(
         if name == "cusp":
             raise InputError("at = 'cusp' takes no model: the cusps of a model are among its singular points")
         return _of_model(order, model, tau, digits)
-    if tau is not None:
-        raise refuse("tau", tau, "a model too: tau names a point of it")
+    require(tau is None, "tau", tau, "a model too: tau names a point of it")
     return fold_form(order) if name == "tangency" else cusp_form(order)
 
 

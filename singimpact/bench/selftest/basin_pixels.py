@@ -18,7 +18,7 @@ from singimpact.bench.truth.plain_orbits import PlainOrbits
 from singimpact.dynamics import basins_of_attraction
 from singimpact.dynamics.behaviours import LongRun
 from singimpact.flights.horizons import horizon_of
-from singimpact.inputs import InputError
+from singimpact.inputs import InputError, need
 
 UNSETTLED = ("chaotic", "not decided")
 
@@ -217,8 +217,7 @@ def _after_lift_off(follower: Follower, index: int, side: float) -> tuple[Fate, 
 def row(flown: Flown, tally: Tally) -> None:
     """Some of the pixels of a picture."""
     osc, fast = flown.osc, flown.scales.fast
-    if flown.scales.period is None:
-        raise NotComparable("g has no period")
+    need(flown.scales.period is not None, NotComparable("g has no period"))
     try:
         follower = Follower(flown.plain, fast, PIXELS.impacts, horizon_of(osc, None))
         with ThreadPoolExecutor(1) as pool:

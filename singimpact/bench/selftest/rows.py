@@ -12,10 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from singimpact.algebra.derivatives import derivative
-from singimpact.algebra.expressions import evaluate
-from singimpact.algebra.numbers import Array, as_float
-from singimpact.algebra.rings import DOUBLES
+from singimpact.algebra import DOUBLES, Array, as_float, derivative, evaluate
 from singimpact.bench.truth.plain_orbits import PlainOrbits, plain_orbits
 from singimpact.flights.results import Step
 from singimpact.impact_oscillator import ImpactOscillator

@@ -23,8 +23,7 @@ from singimpact.dynamics.threshold import threshold
 from singimpact.impact_oscillator import ImpactOscillator, linear
 from singimpact.status import Status
 from singimpact.surface.curve import Window
-from singimpact.theory.frozen import sheet_functions
-from singimpact.theory.impact_sheet import sheet
+from singimpact.theory import sheet, sheet_functions
 
 ORDER = 6
 JETS = {"a_d2": 2 / 3, "f_01": 0.125, "f_10": 1.0, "f_30": 1.5}

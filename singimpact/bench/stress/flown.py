@@ -14,8 +14,7 @@ from typing import Any
 import flint
 import numpy as np
 
-from singimpact.algebra.balls import as_rational
-from singimpact.algebra.precision import balls_at
+from singimpact.algebra import as_rational, balls_at
 from singimpact.bench.stress.judging import STEP, Judge, Launch, SteepLaunch, Trial, both
 from singimpact.bench.truth.first_hit import first_of_both
 from singimpact.bench.truth.hit_in_balls import InBalls, enclosed

@@ -19,8 +19,7 @@ from typing import Any
 import flint
 import mpmath
 
-from singimpact.algebra.numbers import EPSILON
-from singimpact.algebra.precision import balls_at
+from singimpact.algebra import EPSILON, balls_at
 from singimpact.bench.truth.first_hit import Above, Cubic, Linear, first_hit
 from singimpact.impact_oscillator import ImpactOscillator, linear
 

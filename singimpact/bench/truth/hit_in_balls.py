@@ -10,13 +10,10 @@ from typing import Any, NamedTuple
 
 from flint import arb
 
-from singimpact.algebra.expressions import number
-from singimpact.algebra.precision import balls_at, series_of_any_length
-from singimpact.certificates.checker.files import answered
+from singimpact.algebra import balls_at, number, series_of_any_length
+from singimpact.certificates import Flight, Model, answered
 from singimpact.certificates.checker.formulas import Clock, Refused
-from singimpact.certificates.checker.motion import Flight, Model
-from singimpact.flights.enclosures.certified_hit import Launch, certified_hit
-from singimpact.flights.enclosures.equation import NoHit
+from singimpact.flights import Launch, NoHit, certified_hit
 from singimpact.oscillator.model import Oscillator
 
 ACCURACY = 1e-20  # relative radius of the flight time and of the velocity

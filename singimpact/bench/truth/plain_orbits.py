@@ -18,8 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from singimpact.algebra.expressions import Expression, evaluate, names_in, subtract
-from singimpact.algebra.numbers import Array, as_float
+from singimpact.algebra import Array, Expression, as_float, evaluate, names_in, subtract
 from singimpact.bench.truth import graded_steps
 from singimpact.bench.truth.graded_steps import EVERYWHERE, HIT, MISS, UNDECIDED, Motion
 from singimpact.oscillator.model import Oscillator

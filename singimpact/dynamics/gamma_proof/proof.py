@@ -263,8 +263,7 @@ def _zero_ahead(osc: Oscillator, tau: Any) -> ContactZero:
 
 def phase_below(osc: Oscillator) -> Expression | None:
     """The first of some phases of a period with a_c < 0."""
-    if osc.period is None:
-        raise InputError("g is not seen to be periodic: give tau, a phase with a_c(tau) < 0")
+    need(osc.period is not None, InputError("g is not seen to be periodic: give tau, a phase with a_c(tau) < 0"))
     length = as_float(osc.period)
     phases = (number(Fraction(k * length / PHASES).limit_denominator(10**6)) for k in range(PHASES))
     return next((phase for phase in phases if sign_of_acceleration(osc, phase) < 0), None)

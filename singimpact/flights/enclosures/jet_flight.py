@@ -28,6 +28,7 @@ from singimpact.algebra.analytic import Place, Program, Recorder
 from singimpact.algebra.balls import Balls
 from singimpact.algebra.expressions import evaluate, subtract
 from singimpact.algebra.precision import balls_at
+from singimpact.flights.enclosures import tube
 from singimpact.flights.enclosures.certified_hit import ENCLOSURE, SHORTER, SHORTEST, Launch, box_of, working_at
 from singimpact.flights.enclosures.equation import Equation, NotAnalytic, Programs, Refused, programs_of, recorded
 from singimpact.flights.enclosures.taylor_step import (
@@ -39,19 +40,6 @@ from singimpact.flights.enclosures.taylor_step import (
     response,
     sums_of,
     widest_disc,
-)
-from singimpact.flights.enclosures.tube import (
-    NearGraze,
-    RootAtEnd,
-    Tube,
-    ball,
-    below,
-    centre,
-    divided,
-    first_root,
-    height,
-    speed,
-    upper,
 )
 from singimpact.handed_on import flint
 from singimpact.inputs import need
@@ -143,7 +131,7 @@ def composed(partials: Partials, small: Sequence[Sequence[Any]], at: tuple[int, 
 
 def norm(one: Sequence[Any]) -> Any:
     """An upper bound of the sum of the sizes of the coefficients."""
-    return upper(sum((upper(part) for part in one[1:]), upper(one[0])))
+    return tube.upper(sum((tube.upper(part) for part in one[1:]), tube.upper(one[0])))
 
 
 def quotient(one: Sequence[Any], other: Sequence[Any]) -> Jet:
@@ -315,7 +303,7 @@ class _JetFlight:
         rest = total(self._force(z, v, "near", (0, 0, 0)), scaled(g, -1))
         if not all(flint.acb(part).is_finite() for part in rest):
             return None
-        return [upper(norm(rest) + sum((upper(part[2](R)) for part in sums), upper(R * 0)))]
+        return [tube.upper(norm(rest) + sum((tube.upper(part[2](R)) for part in sums), tube.upper(R * 0)))]
 
     def _step(self) -> tuple[list[list[Any]], Any, Any]:
         """The polynomials of a step, the bound K of their errors, and its length."""
@@ -328,12 +316,15 @@ class _JetFlight:
             slack = flint.arb(2) ** (-self.bits // 2)
             for _ in range(STEP.boxes):
                 z, v = (
-                    [P[order] + ball(column[order](length) + slack) for P, column in zip(series, sums, strict=True)]
+                    [
+                        P[order] + tube.ball(column[order](length) + slack)
+                        for P, column in zip(series, sums, strict=True)
+                    ]
                     for order in (0, 1)
                 )
                 A, B = (norm(self._force(z, v, "far", at)) for at in ((1, 0, 0), (0, 1, 0)))
                 if A.is_finite() and B.is_finite():
-                    K = upper(M * R ** (1 - n) * (B * length + A * length**2 / 2).exp() / n)
+                    K = tube.upper(M * R ** (1 - n) * (B * length + A * length**2 / 2).exp() / n)
                     if K * length**n * (1 + length) < slack:
                         return series, K, length
                 length = flint.arb(float(length) / 2)
@@ -346,20 +337,20 @@ class _JetFlight:
                 series, K, length = self._step()
             except (ValueError, ZeroDivisionError) as reason:  # flint raises where a series has no inverse
                 raise Refused(str(reason)) from None
-            value, slope = height(series[0], K), speed(series[0], K)
+            value, slope = tube.height(series[0], K), tube.speed(series[0], K)
             launched = bool(self.time == 0)
-            inner = divided(value, slope, 1) if launched else (value, slope)
+            inner = tube.divided(value, slope, 1) if launched else (value, slope)
             need(inner[0].polynomial[0] > 0, Refused("the mass is not shown to leave the wall"))
-            met, other = inner, below(value, slope, self.gap)
+            met, other = inner, tube.below(value, slope, self.gap)
             if self.across:
                 met, other = other, met
             root, length = self._root(met, length)
             if self.gap != 0:
-                last = length if root is None else centre(root.upper())
+                last = length if root is None else tube.centre(root.upper())
                 before, length = self._root(other, last)
                 if before is not None or (root is not None and length is not last):
                     raise Refused("the flight is not shown to meet one wall before the other")
-            tubes = [(height(P, K), speed(P, K)) for P in series]
+            tubes = [(tube.height(P, K), tube.speed(P, K)) for P in series]
             at = length if root is None else root
             self.z, self.v = [height_tube(at) for height_tube, _ in tubes], [rate(at) for _, rate in tubes]
             self.time = self.time + at
@@ -370,15 +361,15 @@ class _JetFlight:
                 raise Refused("no hit comes before the horizon")
         raise Refused(f"{ENCLOSURE.steps} steps do not come to a hit")
 
-    def _root(self, inner: tuple[Tube, Tube], length: Any) -> tuple[Any, Any]:
+    def _root(self, inner: tuple[tube.Tube, tube.Tube], length: Any) -> tuple[Any, Any]:
         """The first root, or None, and the length of the step on which that is decided."""
         shorter = length
         while shorter > length * SHORTEST:
             try:
-                return first_root(*inner, shorter, self.bits), shorter
-            except RootAtEnd:
-                shorter = centre(shorter * SHORTER)
-            except NearGraze:
+                return tube.first_root(*inner, shorter, self.bits), shorter
+            except tube.RootAtEnd:
+                shorter = tube.centre(shorter * SHORTER)
+            except tube.NearGraze:
                 raise Refused("x - c and x' both vanish, as far as balls tell") from None
         raise Refused("the ball of a state grew too wide to tell the sign of x - c")
 

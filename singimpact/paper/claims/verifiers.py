@@ -148,7 +148,7 @@ def sample(stated: Any, derived: Any) -> dict[str, str]:
 
 
 def every(
-    checks: Sequence[tuple[str, bool] | Check],
+    checks: Mapping[str, bool] | Sequence[tuple[str, bool] | Check],
     kind: str = "proved",
     witness: Callable[[], dict[str, str]] | None = None,
     modulo: tuple[str, ...] = (),
@@ -158,7 +158,7 @@ def every(
 
     Parameters
     ----------
-    checks : (what was tested, whether it passed), or checks that have their own evidence.
+    checks : what was tested -> whether it passed; or a list of such pairs and of checks that have their own evidence.
     witness : numbers for a failure of a part that has none of its own; without it the parts that failed are named.
     modulo : names of theorems that take the checks for their hypotheses.
     tried : a trial on true orbits, run where the checks pass. It decides nothing: an integrator that fails or raises
@@ -166,11 +166,12 @@ def every(
 
     Examples
     --------
-    >>> every([("0 < mu < 1", True)], modulo=("the stable manifold theorem",)).kind
+    >>> every({"0 < mu < 1": True}, modulo=("the stable manifold theorem",)).kind
     'proved modulo'
-    >>> every([("0 < mu < 1", True)], tried=lambda: ("two orbits agree to 1e-9", False)).evidence
+    >>> every({"0 < mu < 1": True}, tried=lambda: ("two orbits agree to 1e-9", False)).evidence
     '0 < mu < 1; a trial apart from the argument FAILS: two orbits agree to 1e-9'
     """
+    checks = list(checks.items()) if isinstance(checks, Mapping) else checks
     named = [(check.evidence, check.holds) if isinstance(check, Check) else check for check in checks]
     failed = [name for name, passed in named if not passed]
     if not failed:

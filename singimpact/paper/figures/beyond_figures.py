@@ -15,8 +15,7 @@ from math import sqrt
 import numpy as np
 import sympy
 
-from singimpact.algebra.numbers import Array, as_float
-from singimpact.algebra.solving import halved
+from singimpact.algebra import Array, as_float, halved
 from singimpact.branches.certified_diagram import certified_diagram
 from singimpact.branches.events import KINDS
 from singimpact.contact.points import tangency_points
@@ -24,17 +23,13 @@ from singimpact.dynamics.orbit import orbit
 from singimpact.dynamics.threshold import threshold
 from singimpact.dynamics.unfolded_swan import swan_configuration
 from singimpact.impact_oscillator import ImpactOscillator, linear
-from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.wall_acceleration import acceleration
+from singimpact.oscillator import Oscillator, acceleration
 from singimpact.paper.claims.beyond.every_order import j
 from singimpact.paper.claims.beyond.hertz import EXPONENT, FACTOR, SECOND, q
 from singimpact.paper.figures.panel import Dot, Line, Panel, Picture, Point, Region, picture_of
 from singimpact.paper.trials.universal_foot import covering, elastic, foot, scaled
 from singimpact.scenes.style import SURFACE
-from singimpact.surface.curve import Curve
-from singimpact.surface.impact_surface import ImpactSurface
-from singimpact.surface.outline_transitions import transitions
-from singimpact.surface.swan_families import Transition
+from singimpact.surface import Curve, ImpactSurface, transitions
 
 SHOWN = 5  # generations in figure B4
 BORN = ("0.9", "0.97", "0.999")  # clearances of figure B6, c_0 = 1
@@ -229,7 +224,8 @@ def figure_B8() -> Picture:
 def _rows(model: Oscillator, rows: tuple[Row, ...]) -> tuple[list[Panel], dict[str, float]]:
     panels, facts = list[Panel](), dict[str, float]()
     for row in rows:
-        transition = _transition(model, row)
+        ends, rests = (row.value - 1e-4, row.value + 1e-4), (-row.reach, row.reach)
+        (transition,) = transitions(model, "clearance", ends, rests, row.kind).visible
         facts[row.title] = transition.value
         launch = transition.launch or (transition.rests[0], 0.0)
         tau = launch[0] + row.tau[0], launch[0] + row.tau[1]
@@ -239,12 +235,6 @@ def _rows(model: Oscillator, rows: tuple[Row, ...]) -> tuple[list[Panel], dict[s
         facts |= {f"{row.title} {sign}": float(_ends(surface, tau)) for surface, _, sign in surfaces}
         panels += _drawn(row, launch, tau, surfaces)
     return panels, facts
-
-
-def _transition(model: Oscillator, row: Row) -> Transition:
-    ends, rests = (row.value - 1e-4, row.value + 1e-4), (-row.reach, row.reach)
-    (found,) = transitions(model, "clearance", ends, rests, row.kind).visible
-    return found
 
 
 def _surface(model: Oscillator, clearance: float, tau: tuple[float, float], row: Row) -> ImpactSurface:

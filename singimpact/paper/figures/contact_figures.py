@@ -12,12 +12,10 @@ from singimpact.contact.points import tangency_points
 from singimpact.dynamics.invariant_arcs import gammas_within, model_step, stable_manifold
 from singimpact.flights.flight_path import many_paths
 from singimpact.impact_oscillator import ImpactOscillator, linear
-from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.wall_acceleration import acceleration
+from singimpact.oscillator import Oscillator, acceleration
 from singimpact.paper.figures.panel import ARCS, Dot, Line, Panel, Picture, Point, Region, picture_of
 from singimpact.studies import swan_points
-from singimpact.surface.curve import Curve, Window
-from singimpact.surface.impact_surface import ImpactSurface
+from singimpact.surface import Curve, ImpactSurface, Window
 
 # p and phi at points of V' of a model that is linear in x: two flights give the launch velocity of any return.
 

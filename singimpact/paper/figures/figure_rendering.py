@@ -10,8 +10,7 @@ import numpy as np
 
 from singimpact.algebra.numbers import Array
 from singimpact.paper.figures.panel import Line, Panel, Picture
-from singimpact.scenes.label_places import place_labels
-from singimpact.scenes.style import BLACK, GREY, HATCH, PENS, SURFACE, WHITE, darken, on_dark
+from singimpact.scenes import BLACK, GREY, HATCH, PENS, SURFACE, WHITE, darken, on_dark, place_labels
 
 
 @dataclass(frozen=True)

@@ -13,8 +13,7 @@ from singimpact.oscillator.wall_acceleration import acceleration
 from singimpact.paper.figures.contact_figures import launch_and_landing, oscillator
 from singimpact.paper.figures.panel import Dot, Line, Panel, Picture, Point, picture_of
 from singimpact.paper.figures.swan_figures import box, half, negative, positive, ring
-from singimpact.surface.curve import Curve
-from singimpact.surface.impact_surface import ImpactSurface
+from singimpact.surface import Curve, ImpactSurface
 
 LEFT, RIGHT, HIGH, LOW, LONG = 1.95, 2.65, 0.25, -0.06, 1.6  # times, velocities and flight times shown
 

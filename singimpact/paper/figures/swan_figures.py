@@ -6,16 +6,13 @@ from functools import lru_cache
 import numpy as np
 
 from singimpact.algebra.numbers import Array
-from singimpact.dynamics.growth import held
-from singimpact.dynamics.invariant_arcs import before, gammas_within, stable_manifold
-from singimpact.dynamics.unfolded_swan import SwanConfiguration, swan_configuration
+from singimpact.dynamics import SwanConfiguration, before, gammas_within, held, stable_manifold, swan_configuration
 from singimpact.flights.rebound_law import rebound
 from singimpact.impact_oscillator import linear
 from singimpact.paper.figures.contact_figures import rebounded, reset
 from singimpact.paper.figures.panel import ARCS, Dot, Line, Panel, Picture, Point, Region, arc, picture_of
 from singimpact.scenes.style import WHITE
-from singimpact.surface.curve import Window
-from singimpact.surface.impact_surface import ImpactSurface
+from singimpact.surface import ImpactSurface, Window
 
 FINE = 1 / 3000  # of the window of the configuration: its outline is magnified until the usual chords would show
 
@@ -304,7 +301,8 @@ def figure_16() -> Picture:
     bottom = arc(ring(swan, "P"), swan.reset["C"], swan.reset["B"], swan.projected["D"])
     left = np.array([[swan.A - 3 * size, 0.0], [swan.A, 0.0]])
     between, right = np.array([[swan.A, 0.0], [swan.B, 0.0]]), np.array([[swan.B, 0.0], [swan.B + 3 * size, 0.0]])
-    onto = _landed_right(4 * size)
+    B = negative().B
+    onto = np.array([[B, 0.0], [B + 0.75 * (4 * size), 0.0]])
     words = {
         "1": "1, 5: on $\\Pi_0$ outside $AB$, at rest",
         "2": r"2: lower edge of the cut $\delta$, and its image",
@@ -351,11 +349,6 @@ def figure_16() -> Picture:
         ),
     ]
     return picture_of(16, str(model), panels)
-
-
-def _landed_right(length: float) -> Array:
-    B = negative().B
-    return np.array([[B, 0.0], [B + 0.75 * length, 0.0]])
 
 
 def figure_17() -> Picture:

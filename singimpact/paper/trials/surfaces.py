@@ -11,8 +11,7 @@ from numpy.typing import ArrayLike
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from singimpact.algebra.derivations import motion
-from singimpact.algebra.numbers import Array, as_float
+from singimpact.algebra import Array, as_float, motion
 from singimpact.impact_oscillator import ImpactOscillator
 from singimpact.oscillator.model import Oscillator
 from singimpact.paper.trials import true_orbits

@@ -15,13 +15,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from singimpact.algebra.expressions import function_of
-from singimpact.algebra.numbers import Array, as_float, as_fraction
-from singimpact.algebra.rings import DOUBLES
-from singimpact.algebra.solving import halved
-from singimpact.contact.contact import acceleration, acceleration_jet, force_jet
-from singimpact.contact.points import tangency_points
-from singimpact.contact.swans import swan_points_over_clearance
+from singimpact.algebra import DOUBLES, Array, as_float, as_fraction, function_of, halved
+from singimpact.contact import acceleration, acceleration_jet, force_jet, swan_points_over_clearance, tangency_points
 from singimpact.flights.impact_map import impact_map
 from singimpact.impact_oscillator import ImpactOscillator
 from singimpact.oscillator import wall_acceleration

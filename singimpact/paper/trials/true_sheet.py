@@ -14,14 +14,8 @@ from typing import Any
 import numpy as np
 import sympy
 
-from singimpact.algebra.balls import Balls
-from singimpact.algebra.jets import Jet
-from singimpact.algebra.numbers import as_float
-from singimpact.algebra.precision import balls_at
-from singimpact.algebra.rings import DOUBLES, Multiprecision
-from singimpact.algebra.solving import secant
-from singimpact.contact.contact import Contact, contact_order, force_jet
-from singimpact.contact.points import tangency_points
+from singimpact.algebra import DOUBLES, Balls, Jet, Multiprecision, as_float, balls_at, secant
+from singimpact.contact import Contact, contact_order, force_jet, tangency_points
 from singimpact.impact_oscillator import ImpactOscillator
 from singimpact.paper.trials import true_orbits
 from singimpact.theory.impact_sheet import Sheet, sheet

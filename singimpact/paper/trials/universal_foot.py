@@ -13,8 +13,7 @@ from typing import Any
 
 from flint import arb, arb_series, fmpq
 
-from singimpact.algebra.balls import as_rational
-from singimpact.algebra.precision import balls_at
+from singimpact.algebra import as_rational, balls_at
 
 START = 3, 4  # landing and length of the flight from rest at A, for every r
 

@@ -154,7 +154,7 @@ def test_drawn_without_a_warning(number):
 
 
 def test_the_command(tmp_path):
-    from singimpact.cli.figure_command import figure_command
+    from singimpact.cli.picture_commands import figure_command
 
     told = CliRunner().invoke(figure_command, ["11", "-o", str(tmp_path), "--format", "svg", "--data"])
     assert told.exit_code == 0, told.output
@@ -240,7 +240,7 @@ def test_letters_are_eight_points_high_on_a_journals_page(look):
 
 
 def test_the_command_takes_serif_and_dark(tmp_path):
-    from singimpact.cli.figure_command import figure_command
+    from singimpact.cli.picture_commands import figure_command
 
     written = []
     for n, options in enumerate([[], ["--serif"], ["--dark"]]):

@@ -3,7 +3,8 @@
 import subprocess
 import sys
 
-from singimpact.paper import cache, kept_sections
+from singimpact import cache
+from singimpact.paper import kept_sections
 from singimpact.paper.sections import derivation_sections
 
 READ = """

@@ -8,7 +8,6 @@ from singimpact.handed_on import names_of
 FILES = (
     "cascade",
     "horseshoe",
-    "repairs",
     "every_order",
     "gauge",
     "first_order",

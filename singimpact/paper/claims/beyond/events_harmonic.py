@@ -338,10 +338,10 @@ def _critical(stated: sympy.Expr) -> Check:
     tangent_vanishes = all(sympy.expand(sum(x * y for x, y in zip(row, tangent, strict=True))) == 0 for row in rows)
     exact = composed(p * s - q * r, {p: m, q: n, r: o, s: u}, stated)
     return every(
-        [
-            (f"the tangent is {tangent}, in (s_1, s_2, c), where its parts do not all vanish", tangent_vanishes),
-            (f"its component of c is {determinant}", exact and tangent[2] == determinant),
-        ],
+        {
+            f"the tangent is {tangent}, in (s_1, s_2, c), where its parts do not all vanish": tangent_vanishes,
+            f"its component of c is {determinant}": exact and tangent[2] == determinant,
+        },
         witness=lambda: {"derived": str(determinant), "stated": str(stated)},
     )
 
@@ -355,11 +355,11 @@ def _eliminated(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
     second = composed((C - 1) * p - k * S * q, {p: one, q: two}, size * (c - clearance))
     turned = sympy.expand(sympy.Matrix([[k * S, C - 1], [C - 1, -k * S]]).det() + size)
     return every(
-        [
-            ("k S E1 + (C - 1) E2 = F", first),
-            ("(C - 1) E1 - k S E2 = ((C - 1)^2 + k^2 S^2)(c - this)", second),
-            ("these combinations are independent where (C - 1)^2 + k^2 S^2 is not 0", turned == 0),
-        ]
+        {
+            "k S E1 + (C - 1) E2 = F": first,
+            "(C - 1) E1 - k S E2 = ((C - 1)^2 + k^2 S^2)(c - this)": second,
+            "these combinations are independent where (C - 1)^2 + k^2 S^2 is not 0": turned == 0,
+        }
     )
 
 

@@ -1,5 +1,7 @@
 """Contact points of every order j: one ray that carries gamma, a saddle for every r, and on which side it lies.
 
+Before them a bound that section 4(b) needs on its rays, and that the paper does not have.
+
 The model is x'' = s^j; l is the ratio of landing and launch time, and L stands for l^j, so that an identity in l, L and
 j holds for every j.  P and Q are the polynomials of `theory.multipliers`.
 """
@@ -11,7 +13,9 @@ import sympy
 from singimpact.algebra.certificates import positive_in, positive_on
 from singimpact.algebra.derivations import At, substitution
 from singimpact.paper.claims.claim import Check, Encoding
+from singimpact.paper.claims.sections.section4b import SLACK
 from singimpact.paper.claims.verifiers import every, is_zero, same
+from singimpact.paper.routes.implicit import r
 from singimpact.theory.multipliers import DG_on_ray, P, Q, lambda_, mu_of_lambda, r_of_lambda
 
 ell, L, j, i, V, W = sympy.symbols("l L j i V W")
@@ -237,7 +241,25 @@ def _sides(stated: tuple[int, int]) -> Check:
     )
 
 
+def _below_one(stated: tuple[Any, Any]) -> Check:
+    """(A, B), A < B on (0, 1): A/B is r times the ratio of the corrected bounds of q~ and p~ without M."""
+    small, large = stated
+    return every(
+        {
+            "A/B = r (1 + e)/(1 - e), e = (1 - r)/3 the slack of both bounds": same(
+                small / large, r * (1 + SLACK) / (1 - SLACK)
+            ),
+            "B - A is positive on (0, 1)": positive_on(large - small, r, 0, 1),
+        }
+    )
+
+
 CLAIMS = {
+    "b:ratio-bound": Encoding(
+        (r * (4 - r), 2 + r),
+        _below_one,
+        ((r * (5 - r), 2 + r), (r * (1 + 2 * r), 2 + r), (2 * r * (4 - r), 2 * (2 + r) - 3)),
+    ),
     "b:order-ray": Encoding(1, _ray, (0, 2)),
     "b:order-saddle": Encoding(1, _saddle, (2, 3)),
     "b:order-expansion": Encoding(1, _smaller, (0, -1)),

@@ -62,10 +62,10 @@ def _shifted(stated: sympy.Expr) -> Check:
     derived = sympy.factor(-change.time.subs(s, X))
     ends = [change.time.subs(s, edge) for edge in (-1, 1)]
     return every(
-        [
-            (f"S takes X_H to X, so X_H - X = {derived} H + O(H^2)", same(stated, derived)),
-            ("A and B stay at -1 and 1", all(end == 0 for end in ends)),
-        ],
+        {
+            f"S takes X_H to X, so X_H - X = {derived} H + O(H^2)": same(stated, derived),
+            "A and B stay at -1 and 1": all(end == 0 for end in ends),
+        },
         witness=lambda: sample(stated, derived),
         modulo=(NORMALLY_HYPERBOLIC,),  # Pi_0 behind B: the foot is a smooth function of the state and of H
     )

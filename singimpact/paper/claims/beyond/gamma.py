@@ -96,11 +96,11 @@ def _for_all(stated: tuple[str, tuple[str, str], str, str]) -> Check:
         return Check(False, "certified", str(reason), {"fails": str(reason)})
     touch = all(one.high == other.low for one, other in pairwise(proof.boxes))
     return every(
-        [
-            (f"{len(proof.boxes)} boxes of lambda touch, and hold that of every r in {list(between)}", touch),
-            (f"the lemmas hold for S <= {proof.reach} on each of them", proof.reach == Fraction(reach)),
-            (f"|l - L(S)| <= {proof.Kl:.3g} S^6 on gamma", proof.Kl <= float(bound)),
-        ],
+        {
+            f"{len(proof.boxes)} boxes of lambda touch, and hold that of every r in {list(between)}": touch,
+            f"the lemmas hold for S <= {proof.reach} on each of them": proof.reach == Fraction(reach),
+            f"|l - L(S)| <= {proof.Kl:.3g} S^6 on gamma": proof.Kl <= float(bound),
+        },
         "certified",
     )
 

@@ -35,31 +35,24 @@ def _rate(expression: sympy.Expr) -> Any:
     return sum((sympy.diff(expression, letter) * rate for letter, rate in rates.items()), sympy.Integer(0))
 
 
-def _second_derivative() -> Any:
-    """d^2 y/ds^2 for y = X E/C, as d/ds = C^2 d/dt: ds/dt = (C^2 + w S^2)/C^2 and C^2 + w S^2 = 1."""
-    first = sympy.cancel(C**2 * _rate(X * E / C))
-    second = sympy.Poly(sympy.expand(sympy.cancel(C**2 * _rate(first))), S)
-    return sympy.expand(sympy.rem(second, sympy.Poly(w * S**2 + C**2 - 1, S)).as_expr())
-
-
 def _ball(stated: tuple[int, int]) -> Check:
     """(p, q): A = E^q C^p a_c, as an identity of the motion and as the series of v_c for three linear models."""
     power, exponent = stated
-    derived = _second_derivative()
+    # d^2 y/ds^2 for y = X E/C, as d/ds = C^2 d/dt: ds/dt = (C^2 + w S^2)/C^2 and C^2 + w S^2 = 1
+    first = sympy.cancel(C**2 * _rate(X * E / C))
+    second = sympy.Poly(sympy.expand(sympy.cancel(C**2 * _rate(first))), S)
+    derived = sympy.expand(sympy.rem(second, sympy.Poly(w * S**2 + C**2 - 1, S)).as_expr())
     gravity = E**exponent * C**power * a
     exact = same(derived, gravity)
     if exact:
         substitution(At(E * C**3 * X, {X: a}), derived)
     compared = {name: exact and _routes_agree(*numbers) for name, numbers in MODELS.items()}
     return every(
-        [
-            (f"d^2 y/ds^2 = {derived}; stated: {gravity}", exact),
-            (
-                f"v_c by this closed form and by the boundary value problem: equal rationals to order {ORDER} for "
-                f"{', '.join(compared)} models",
-                all(compared.values()),
-            ),
-        ],
+        {
+            f"d^2 y/ds^2 = {derived}; stated: {gravity}": exact,
+            f"v_c by this closed form and by the boundary value problem: equal rationals to order {ORDER} for "
+            f"{', '.join(compared)} models": all(compared.values()),
+        },
         witness=lambda: {"d^2 y/ds^2": str(derived), "stated": str(gravity)},
     )
 
@@ -112,7 +105,7 @@ def _entry(stated: tuple[int, ...]) -> Check:
         ]
         entries.append(min(degrees) - (j + 1))
     return every(
-        [(f"second derivatives of f enter v_c {entries} degrees above its leading part", tuple(entries) == stated)]
+        {f"second derivatives of f enter v_c {entries} degrees above its leading part": tuple(entries) == stated}
     )
 
 

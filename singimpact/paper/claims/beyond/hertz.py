@@ -86,14 +86,13 @@ def _repelled(stated: sympy.Expr) -> Check:
     """The relative distance of v/h^N from its value on gamma grows like h^(-p)."""
     rate_ = sympy.factor((1 - q) * (EXPONENT - j / 3))
     return every(
-        [
-            (
-                "on gamma the loss is x e, and over e it falls like (v/h^N)^(q-1), as q < 1",
-                _balanced((EXPONENT, FACTOR)).holds,
-            ),
-            (f"an impact multiplies distances by 1 + p e, h by 1 - e: p = (1 - q) x = {rate_}", same(stated, rate_)),
-            ("p > 1 for every j > 0 and q in (0, 1)", positive_in(stated - 1, {j: (0, sympy.oo), q: (0, 1)})),
-        ],
+        {
+            "on gamma the loss is x e, and over e it falls like (v/h^N)^(q-1), as q < 1": _balanced(
+                (EXPONENT, FACTOR)
+            ).holds,
+            f"an impact multiplies distances by 1 + p e, h by 1 - e: p = (1 - q) x = {rate_}": same(stated, rate_),
+            "p > 1 for every j > 0 and q in (0, 1)": positive_in(stated - 1, {j: (0, sympy.oo), q: (0, 1)}),
+        },
         "formal",
         witness=lambda: sample(stated, rate_),
     )
@@ -147,10 +146,10 @@ def _left(stated: sympy.Expr) -> Check:
     """The time left of a chatter under a_c < 0: j = 0, where h is the time to the end."""
     ratio = sympy.cancel(1 / FACTOR.subs(j, 0))
     return every(
-        [
-            (f"at j = 0 gamma is the line of one end, and h = v^(1-q)/(K C b) with 1/K = {ratio}", same(stated, ratio)),
-            ("it is positive and finite for 0 < q < 1: chatter ends although r = 1", positive_in(stated, {q: (0, 1)})),
-        ],
+        {
+            f"at j = 0 gamma is the line of one end, and h = v^(1-q)/(K C b) with 1/K = {ratio}": same(stated, ratio),
+            "it is positive and finite for 0 < q < 1: chatter ends although r = 1": positive_in(stated, {q: (0, 1)}),
+        },
         "formal",
         witness=lambda: sample(stated, ratio),
     )

@@ -118,16 +118,13 @@ def _chaotic(stated: tuple[str, tuple[int, int], str]) -> Check:
         return Check(False, "certified", horseshoe, {"fails": horseshoe})
     bound = exact("value", horseshoe.entropy.value) - exact("radius", horseshoe.entropy.radius)
     return every(
-        [
-            (
-                f"{len(horseshoe.sets)} parallelograms, round the saddle and along the homoclinic orbit, are crossed "
-                "by "
-                f"images of one another: loops of {horseshoe.loops[0]} and {horseshoe.loops[1]} impacts follow in any "
-                "order",
-                horseshoe.loops == loops,
-            ),
-            (f"the entropy of G is at least {horseshoe.entropy}", Fraction(entropy) <= bound),
-        ],
+        {
+            f"{len(horseshoe.sets)} parallelograms, round the saddle and along the homoclinic orbit, are crossed "
+            "by "
+            f"images of one another: loops of {horseshoe.loops[0]} and {horseshoe.loops[1]} impacts follow in any "
+            "order": horseshoe.loops == loops,
+            f"the entropy of G is at least {horseshoe.entropy}": Fraction(entropy) <= bound,
+        },
         "certified",
     )
 

@@ -25,14 +25,11 @@ def _rises(stated: sympy.Expr) -> Check:
     change = sympy.expand(stated.subs(images, simultaneous=True) - before)
     substitution(At(stated, images), sympy.expand(before + change))
     return every(
-        [
-            (f"from an impact to the next {stated} changes by {change}", True),
-            ("which is positive for t > 0", positive_in(change, WINDOW)),
-            (
-                "in every model, as the next launch is at tau + t: no state comes back, and none near it",
-                same(change, t),
-            ),
-        ],
+        {
+            f"from an impact to the next {stated} changes by {change}": True,
+            "which is positive for t > 0": positive_in(change, WINDOW),
+            "in every model, as the next launch is at tau + t: no state comes back, and none near it": same(change, t),
+        },
         witness=lambda: {"function": str(stated), "change": str(change)},
     )
 

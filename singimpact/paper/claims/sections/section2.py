@@ -60,12 +60,12 @@ def _dense(omega: sympy.Expr) -> Check:
     along = sympy.diff(met, beta) * omega - sympy.diff(met, alpha)
     turn = sympy.Matrix([met, speed]).jacobian([alpha, beta]).det()
     return every(
-        [
-            (f"omega = {omega} is irrational, so (-s, omega s) modulo 2 pi is dense", omega.is_irrational is True),
-            ("one flight from rest passes the wall at time 0, upwards", is_zero(start) and rate.is_positive is True),
-            ("nearby such (alpha, beta) lie on an arc that the dense line crosses", _signed(along.subs(angles))),
-            ("along which the velocity changes: a dense set of an interval", _signed(turn.subs(angles))),
-        ],
+        {
+            f"omega = {omega} is irrational, so (-s, omega s) modulo 2 pi is dense": omega.is_irrational is True,
+            "one flight from rest passes the wall at time 0, upwards": is_zero(start) and rate.is_positive is True,
+            "nearby such (alpha, beta) lie on an arc that the dense line crosses": _signed(along.subs(angles)),
+            "along which the velocity changes: a dense set of an interval": _signed(turn.subs(angles)),
+        },
         modulo=("Kronecker's theorem",),
     )
 
@@ -114,7 +114,7 @@ def _two_sheets(rank: int) -> Check:
     gradient = sympy.Matrix([[sympy.diff(y, x).subs(on_axis) for x in (sigma, v, t)], [0, 0, 1]])
     minor = gradient[:, 1:].det()
     found = 2 if minor == 1 else 1
-    return every([(f"a minor of the two gradients on Pi_0 is {minor}, whatever a is: rank {found}", found == rank)])
+    return every({f"a minor of the two gradients on Pi_0 is {minor}, whatever a is: rank {found}": found == rank})
 
 
 def _horizon(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
@@ -127,11 +127,11 @@ def _horizon(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
     degrees = [sum(key) for key, _ in sympy.Poly(left, sigma, t).terms()] if left != 0 else [9]
     at_rest = v_t.subs({t: 0, sigma: 0})
     return every(
-        [
-            ("x-dot = t dy/dt where y = 0, so off t = 0 p is singular where x-dot = 0", _same_zeros(stated[0], off)),
-            (f"on t = 0 dy/dt = {on}: singular where a = 0", _same_zeros(stated[1], on)),
-            ("x-dot = -t (dy/dv) dv_c/dt on V_c' to order 4", min(degrees) > 4 and is_zero(at_rest + on)),
-        ],
+        {
+            "x-dot = t dy/dt where y = 0, so off t = 0 p is singular where x-dot = 0": _same_zeros(stated[0], off),
+            f"on t = 0 dy/dt = {on}: singular where a = 0": _same_zeros(stated[1], on),
+            "x-dot = -t (dy/dv) dv_c/dt on V_c' to order 4": min(degrees) > 4 and is_zero(at_rest + on),
+        },
         witness=lambda: {"point": "(tau, 0; 0) with a = 1", "x-dot": "0", "dv_c/dt": str(at_rest.subs(a, 1))},
     )
 
@@ -142,13 +142,10 @@ def _whitney(powers: tuple[int, int]) -> Check:
     first, second, third, mixed = model.cusp_conditions(model.D)
     cusp = 3 if first == second == 0 and third != 0 and mixed != 0 else 0
     return every(
-        [
-            (
-                f"theorem of Whitney, quoted; p has exponent {fold} at a tangency point after changes of coordinates, "
-                f"and at D v_t = v_tt = 0, v_ttt = {third}, v_(sigma t) = {mixed}",
-                (fold, cusp) == powers,
-            )
-        ],
+        {
+            f"theorem of Whitney, quoted; p has exponent {fold} at a tangency point after changes of coordinates, "
+            f"and at D v_t = v_tt = 0, v_ttt = {third}, v_(sigma t) = {mixed}": (fold, cusp) == powers
+        },
         kind="cited",
     )
 
@@ -251,10 +248,10 @@ def _rest(sign: int) -> Check:
     leading = sympy.cancel(route.at_contact(route.y_c(2), 1).subs({sigma: 0, v: 0}) / t**2)
     share = sympy.cancel(leading / a1)
     return every(
-        [
-            (f"x_c - c = ({leading}) t^3 + ... from a tangency point", share.is_Rational and share != 0),
-            ("it is fixed where that is negative, and lifts off where it is positive", sign == -sympy.sign(share)),
-        ],
+        {
+            f"x_c - c = ({leading}) t^3 + ... from a tangency point": share.is_Rational and share != 0,
+            "it is fixed where that is negative, and lifts off where it is positive": sign == -sympy.sign(share),
+        },
         witness=lambda: {"a'": "1", "(x_c - c)/t^3": str(leading.subs(a1, 1))},
     )
 
@@ -288,14 +285,11 @@ def _corresponding(stated: tuple[bool, bool]) -> Check:
     launch, landing = surfaces.exact_sheet(v * t + t**2 / 2)
     empty = sympy.Poly(landing, t).monoms() == [(1,)]  # x-dot = t/2 on V_c': 0 at t = 0 alone, where a = 1
     return every(
-        [
-            ("iota exchanges v = 0 and x-dot = 0 off t = 0, and phi = p o iota", exchanged),
-            (
-                f"x'' = 1 has v_c = {launch}, x-dot = {landing}: no graze, so phi(H) is empty, and Pi_0 in phi(Z) is not "
-                "in P",
-                empty and not onto and not with_axis,
-            ),
-        ],
+        {
+            "iota exchanges v = 0 and x-dot = 0 off t = 0, and phi = p o iota": exchanged,
+            f"x'' = 1 has v_c = {launch}, x-dot = {landing}: no graze, so phi(H) is empty, and Pi_0 in phi(Z) is not "
+            "in P": empty and not onto and not with_axis,
+        },
         witness=lambda: {
             "model": "x'' = 1, c = 0",
             "point of Z": "(tau, 0; 0)",
@@ -339,13 +333,10 @@ def _semiconjugacy(crossings: Any) -> Check:
     states = [(time, sympy.diff(height, t).subs(t, time)) for time in times]
     surfaces.exact_sheet(v * t - 3 * t**2 + t**3)
     return every(
-        [
-            (
-                f"at visible points F(p(z)) = z; the flight {height} has phi = {states[0]} and then {states[1]}, and G(p(z)) "
-                "is the first one for both",
-                times == [1, 2] and states[0] != states[1] and crossings == 1,
-            )
-        ],
+        {
+            f"at visible points F(p(z)) = z; the flight {height} has phi = {states[0]} and then {states[1]}, and G(p(z)) "
+            "is the first one for both": times == [1, 2] and states[0] != states[1] and crossings == 1
+        },
         tried=lambda: surfaces.semiconjugacy()[0],
         witness=lambda: surfaces.semiconjugacy()[1],
     )

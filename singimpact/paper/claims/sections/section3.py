@@ -24,25 +24,23 @@ def _image(matrix: sympy.MatrixBase) -> tuple[sympy.Expr, sympy.Expr]:
 def _eigenvectors(stated: tuple[tuple[Any, tuple[Any, Any]], ...]) -> Check:
     """Each (eigenvalue, vector) satisfies DG vector = eigenvalue vector, and the two vectors are independent."""
     return every(
-        [
-            (
-                "DG v = lambda v for both vectors",
-                all(is_eigenvector(route.DG(), value, vector) for value, vector in stated),
+        {
+            "DG v = lambda v for both vectors": all(
+                is_eigenvector(route.DG(), value, vector) for value, vector in stated
             ),
-            ("they are independent", not is_zero(sympy.Matrix([list(vector) for _, vector in stated]).det())),
-        ]
+            "they are independent": not is_zero(sympy.Matrix([list(vector) for _, vector in stated]).det()),
+        }
     )
 
 
 def _is_slope_at_rest(stated: sympy.Expr) -> Check:
     """dv_c/dt at z_*: with it y_c vanishes to first order on v = t dv_c/dt."""
     return every(
-        [
-            (
-                "with this slope v_c makes y_c vanish to first order",
-                agree(route.y_c(1), {sigma: 0, route.v: stated * t}, 0),
+        {
+            "with this slope v_c makes y_c vanish to first order": agree(
+                route.y_c(1), {sigma: 0, route.v: stated * t}, 0
             )
-        ],
+        },
         witness=lambda: sample(stated, route.slope_at_rest()),
     )
 
@@ -80,10 +78,10 @@ def _slope_sign(stated: tuple[int, sympy.Expr]) -> Check:
         }
 
     return every(
-        [
-            ("the direction is the eigenvector of DG for r", good),
-            ("0 < r < 1 contracts across Pi_0, on which G is the identity: Pi_0 is normally hyperbolic", contracting),
-        ],
+        {
+            "the direction is the eigenvector of DG for r": good,
+            "0 < r < 1 contracts across Pi_0, on which G is the identity: Pi_0 is normally hyperbolic": contracting,
+        },
         modulo=(NORMALLY_HYPERBOLIC,),
         tried=trial,
         witness=witness,
@@ -117,7 +115,7 @@ def _smooth_foliation(stated: int) -> Check:
     orders = true_orbits.completion_orders()
     shown = ", ".join(f"{order:.2f}" for order in orders)
     what = f"theorem quoted; on true orbits tau_inf differs from a smooth expansion to v^2 by order {shown}"
-    return every([(what, all(abs(order - stated) < 0.25 for order in orders))], kind="cited")
+    return every({what: all(abs(order - stated) < 0.25 for order in orders)}, kind="cited")
 
 
 CLAIMS = {

@@ -63,11 +63,11 @@ def _linear_model(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
     repeats = derived.subs(tau, tau + stated[1]) - derived
     halved = derived.subs(tau, tau + stated[1] / 2) - derived
     return every(
-        [
-            ("a_c = g - f(c, 0) is the expression stated", is_zero(stated[0] - derived)),
-            ("a_c repeats after T", is_zero(sympy.expand_trig(sympy.expand(repeats)))),
-            ("and not after T/2", not is_zero(sympy.expand_trig(sympy.expand(halved)))),
-        ]
+        {
+            "a_c = g - f(c, 0) is the expression stated": is_zero(stated[0] - derived),
+            "a_c repeats after T": is_zero(sympy.expand_trig(sympy.expand(repeats))),
+            "and not after T/2": not is_zero(sympy.expand_trig(sympy.expand(halved))),
+        }
     )
 
 
@@ -86,10 +86,10 @@ def _zeros(stated: sympy.Expr) -> Check:
     remainder = sympy.expand(circle.subs(at_zero))
     substitution(At(circle, at_zero), remainder)
     return every(
-        [
-            (f"a_c = {value} and a_c' = {rate} vanish together only where {remainder} = 0", same(remainder, stated)),
-            ("so at c = 1 and c = -1 alone", sympy.Poly(remainder, c).real_roots() == [-1, 1]),
-        ],
+        {
+            f"a_c = {value} and a_c' = {rate} vanish together only where {remainder} = 0": same(remainder, stated),
+            "so at c = 1 and c = -1 alone": sympy.Poly(remainder, c).real_roots() == [-1, 1],
+        },
         modulo=("Sard's theorem",),
     )
 
@@ -146,7 +146,7 @@ def _leading(j: int, order: int) -> Any:
 
     def verify(stated: sympy.Expr) -> Check:
         check = exact(stated)
-        return every([(check.evidence, True)], tried=trial) if check.holds else check
+        return every({check.evidence: True}, tried=trial) if check.holds else check
 
     return verify
 
@@ -174,7 +174,7 @@ def _saddle(stated: int) -> Check:
 
 
 def _at_launch(stated: sympy.Expr) -> Check:
-    return every([("y_c is what is stated at t = 0", agree(route.y_c(4), {t: 0}, stated))])
+    return every({"y_c is what is stated at t = 0": agree(route.y_c(4), {t: 0}, stated)})
 
 
 CLAIMS = {

@@ -119,13 +119,10 @@ def _attracting(stated: tuple[int, int]) -> Check:
     """On gamma sigma -> lambda sigma + ..., and lambda lies in the stated interval for every r in (0, 1)."""
     low, high = stated
     return every(
-        [
-            (
-                "lambda = m3 - 1/2 runs through (0, 1) as r does",
-                _interval_map(r_of_lambda(1)) and (low, high) == (0, 1),
-            ),
-            ("it is the rate of h' at m3", agree(fold.r_of_m(), {m: lambda_ + HALF}, r_of_lambda(1))),
-        ],
+        {
+            "lambda = m3 - 1/2 runs through (0, 1) as r does": _interval_map(r_of_lambda(1)) and (low, high) == (0, 1),
+            "it is the rate of h' at m3": agree(fold.r_of_m(), {m: lambda_ + HALF}, r_of_lambda(1)),
+        },
         tried=lambda: rate_on_gamma(1),
     )
 
@@ -163,7 +160,7 @@ def _at_rest(stated: sympy.Expr) -> Check:
     """x_c - c on the motion from (tau_*, 0), to third order in t: 0 if w_* is fixed; a' t^3/6 lifts off."""
     leading = sympy.expand(t * route.at_contact(route.y_c(2), 1).subs({route.sigma: 0, route.v: 0}))
     return every(
-        [(f"from w_* x_c - c = {leading} + ..., above 0 for a' > 0; stated: {stated}", same(leading, stated))],
+        {f"from w_* x_c - c = {leading} + ..., above 0 for a' > 0; stated: {stated}": same(leading, stated)},
         tried=lambda: (
             "first hit from (tau_*, 0) after {1:.6f} ({0}): F(w_*) is not w_*".format(*arcs.lift_off()[0]),
             all(time > 0.5 for _, time in arcs.lift_off()),
@@ -207,10 +204,10 @@ def _limit(stated: sympy.Expr) -> Check:
         return name, worst < REACHED
 
     return every(
-        [
-            ("it is a root of the characteristic polynomial of DG on gamma for every r", is_zero(residual)),
-            ("and the one above 1: so it is at lambda = 1/2, and no root passes 1", above_one(stated, 1)),
-        ],
+        {
+            "it is a root of the characteristic polynomial of DG on gamma for every r": is_zero(residual),
+            "and the one above 1: so it is at lambda = 1/2, and no root passes 1": above_one(stated, 1),
+        },
         tried=trial,
         witness=lambda: {
             "r": "1/2",

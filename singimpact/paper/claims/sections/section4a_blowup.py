@@ -38,11 +38,11 @@ def _z_line(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
     line, to_axis = stated
     first, _ = fold.phi()
     return every(
-        [
-            ("v_c vanishes on it to second order", is_zero(velocity.subs(t, line))),
-            ("it is not Pi_0", not is_zero(line)),
-            ("phi takes the second line to sigma = 0", is_zero(first.subs(sigma, to_axis))),
-        ]
+        {
+            "v_c vanishes on it to second order": is_zero(velocity.subs(t, line)),
+            "it is not Pi_0": not is_zero(line),
+            "phi takes the second line to sigma = 0": is_zero(first.subs(sigma, to_axis)),
+        }
     )
 
 
@@ -228,11 +228,11 @@ def _q_positive(stated: Any) -> Check:
     end = sympy.Poly(polynomial.subs(r, HALF), m).nroots(n=6)[1]
     zeros = all(is_zero(polynomial.subs(m, zero)) for zero in ENDS)
     return every(
-        [
-            ("positive outside [m_-, m_+] for every r in (0, 1)", outside),
-            ("the relation holds there", bool(stated.subs(Q, 1))),
-            ("the ends m_-, m_+ of E_r are zeros, and it holds at 0", zeros and bool(stated.subs(Q, 0))),
-        ],
+        {
+            "positive outside [m_-, m_+] for every r in (0, 1)": outside,
+            "the relation holds there": bool(stated.subs(Q, 1)),
+            "the ends m_-, m_+ of E_r are zeros, and it holds at 0": zeros and bool(stated.subs(Q, 0)),
+        },
         witness=lambda: {"r": "1/2", "m_+": str(end), "Q_r(1, m_+)": "0"},
     )
 
@@ -243,18 +243,14 @@ def _domain(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
     simple = sign_chain(fold.Q_at_one(), ((-sympy.oo, 1), (HALF, -1), (sympy.oo, 1)))
     below, above = stated
     return every(
-        [
-            (
-                "the discriminant of Q_r(1, m) is positive for every r in (0, 1), so dQ/dm is not 0 at m_-, m_+ "
-                "and the implicit function theorem gives delta_-, delta_+",
-                simple and positive_on(discriminant, r, 0, 1),
+        {
+            "the discriminant of Q_r(1, m) is positive for every r in (0, 1), so dQ/dm is not 0 at m_-, m_+ "
+            "and the implicit function theorem gives delta_-, delta_+": simple and positive_on(discriminant, r, 0, 1),
+            "delta_-(0) and delta_+(0) are zeros of Q_r(1, m), at which the root leaves the reals": all(
+                is_zero(fold.Q_at_one().subs(m, end)) for end in stated
             ),
-            (
-                "delta_-(0) and delta_+(0) are zeros of Q_r(1, m), at which the root leaves the reals",
-                all(is_zero(fold.Q_at_one().subs(m, end)) for end in stated),
-            ),
-            ("and they are the smaller and the larger one", bool(below.subs(r, HALF) < above.subs(r, HALF))),
-        ]
+            "and they are the smaller and the larger one": bool(below.subs(r, HALF) < above.subs(r, HALF)),
+        }
     )
 
 
@@ -278,11 +274,11 @@ def _converse(stated: Callable[[Any], Any]) -> Check:
         if not stated((low + high) / 2) and not negative_on(m * (m - HALF), m, low, high)
     ]
     return every(
-        [
-            ("m (m - 1/2) has one sign on the place of each root", sign_chain(CUBIC - 2 * r * m, ROOT_SIGNS)),
-            ("it is positive for each root in the stated set", not failing),
-            ("no root with m (m - 1/2) > 0 is left out", not missing),
-        ],
+        {
+            "m (m - 1/2) has one sign on the place of each root": sign_chain(CUBIC - 2 * r * m, ROOT_SIGNS),
+            "it is positive for each root in the stated set": not failing,
+            "no root with m (m - 1/2) > 0 is left out": not missing,
+        },
         witness=lambda: {
             "r": "1/2",
             "m2": str(root),
@@ -296,10 +292,10 @@ def _fixed_points(stated: sympy.Expr) -> Check:
     rate, new = fold.h_blown_up()
     cleared = sympy.cancel(sympy.expand((new * rate) ** 2 - (m * rate) ** 2))
     return every(
-        [
-            ("squaring m = (m - 1/2)^(-1) sqrt(Q) gives it", is_zero(stated - cleared)),
-            ("m = 1/2 is not lost: it lies outside E_r", negative_on(fold.Q_at_one().subs(m, HALF), r, 0, 1)),
-        ],
+        {
+            "squaring m = (m - 1/2)^(-1) sqrt(Q) gives it": is_zero(stated - cleared),
+            "m = 1/2 is not lost: it lies outside E_r": negative_on(fold.Q_at_one().subs(m, HALF), r, 0, 1),
+        },
         witness=lambda: {
             "m": "2",
             "r": "1/2",
@@ -315,10 +311,10 @@ def _root_places(stated: tuple[sympy.Expr, sympy.Expr, sympy.Expr]) -> Check:
     cubic = fold.fixed_point_factors()[1]
     chain = ((-sympy.oo, -1), (low, 1), (left, 1), (right, -1), (sympy.oo, 1))
     return every(
-        [
-            (f"signs - + + - + at -oo, {low}, {left}, {right}, oo for every r in (0, 1)", sign_chain(cubic, chain)),
-            ("it is a cubic, so these are all", sympy.degree(cubic, m) == 3),
-        ]
+        {
+            f"signs - + + - + at -oo, {low}, {left}, {right}, oo for every r in (0, 1)": sign_chain(cubic, chain),
+            "it is a cubic, so these are all": sympy.degree(cubic, m) == 3,
+        }
     )
 
 

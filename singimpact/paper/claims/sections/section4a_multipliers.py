@@ -43,14 +43,11 @@ def _line(low: sympy.Expr, high: sympy.Expr) -> Callable[[tuple[int, int]], Chec
     def verify(stated: tuple[int, int]) -> Check:
         ray = _ray(low, high)
         return every(
-            [
-                ("p and q map the line onto one parabola", _same_parabola()),
-                (
-                    f"q turns it {'round' if ray['orientation'] < 0 else 'the same way'}",
-                    ray["orientation"] == stated[0],
-                ),
-                (f"v is {'positive' if ray['v'] > 0 else 'negative'} on it for k > 0", ray["v"] == stated[1]),
-            ],
+            {
+                "p and q map the line onto one parabola": _same_parabola(),
+                f"q turns it {'round' if ray['orientation'] < 0 else 'the same way'}": ray["orientation"] == stated[0],
+                f"v is {'positive' if ray['v'] > 0 else 'negative'} on it for k > 0": ray["v"] == stated[1],
+            },
             witness=lambda: {
                 "m in": f"({low}, {high})",
                 "orientation": str(ray["orientation"]),
@@ -68,10 +65,10 @@ def _gradient(stated: tuple[sympy.Expr, int]) -> Check:
     below = sign_chain(fold.fixed_point_factors()[1], ((-sympy.oo, -1), (-THREE_HALVES, 1)))
     bound = gradient.subs(m, -THREE_HALVES)
     return every(
-        [
-            (f"the gradient is {gradient}", is_zero(gradient - stated[0])),
-            (f"m1 < -3/2, so it is below {bound}", below and bound == stated[1]),
-        ]
+        {
+            f"the gradient is {gradient}": is_zero(gradient - stated[0]),
+            f"m1 < -3/2, so it is below {bound}": below and bound == stated[1],
+        }
     )
 
 
@@ -82,10 +79,10 @@ def _m2_sign(stated: int) -> Check:
     before = fold.gamma_leading().subs({m: root, fold.k: 1})
     after = sympy.N(_q_velocity(root) / 2, 20)
     return every(
-        [
-            ("p and q map the line onto one parabola", _same_parabola()),
-            ("on which v > 0 for k > 0, before and after", ray == stated and positive_on(_q_velocity(m), m, 0, HALF)),
-        ],
+        {
+            "p and q map the line onto one parabola": _same_parabola(),
+            "on which v > 0 for k > 0, before and after": ray == stated and positive_on(_q_velocity(m), m, 0, HALF),
+        },
         witness=lambda: {"r": "1/2", "k": "1", "m2": str(root), "v before": str(before), "v after": str(after)},
     )
 
@@ -101,12 +98,12 @@ def ray_m3(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
     low, high = stated
     rule = fold.r_of_m()
     return every(
-        [
-            ("v > 0 and the same orientation on the ray", _ray(low, high) == {"v": 1, "orientation": 1}),
-            ("t = (m - 3/2) sigma > 0 for sigma < 0", positive_on(THREE_HALVES - m, m, low, high)),
-            ("r(m) increases on the interval", positive_on(sympy.diff(rule, m), m, low, high)),
-            ("from 0 to 1", value_at(rule, m, low) == 0 and value_at(rule, m, high) == 1),
-        ]
+        {
+            "v > 0 and the same orientation on the ray": _ray(low, high) == {"v": 1, "orientation": 1},
+            "t = (m - 3/2) sigma > 0 for sigma < 0": positive_on(THREE_HALVES - m, m, low, high),
+            "r(m) increases on the interval": positive_on(sympy.diff(rule, m), m, low, high),
+            "from 0 to 1": value_at(rule, m, low) == 0 and value_at(rule, m, high) == 1,
+        }
     )
 
 
@@ -168,22 +165,19 @@ def _saddle(stated: tuple[sympy.Expr, sympy.Expr, sympy.Expr, sympy.Expr]) -> Ch
     multiplier = fold.N_r_at_fixed_points()
     ends = tuple(value_at(eigenvalue, m, end) for end in (HALF, THREE_HALVES) for eigenvalue in (rate, multiplier))
     return every(
-        [
-            ("m3 in (1/2, 3/2) runs once through r in (0, 1)", ray_m3((HALF, THREE_HALVES)).holds),
-            (
-                "0 < lambda < 1",
-                positive_on(rate, m, HALF, THREE_HALVES) and positive_on(1 - rate, m, HALF, THREE_HALVES),
-            ),
-            ("mu > 1", positive_on(multiplier - 1, m, HALF, THREE_HALVES)),
-            (f"limits {ends[0]}, {ends[1]} as r -> 0 and {ends[2]}, {ends[3]} as r -> 1", ends == stated),
-        ]
+        {
+            "m3 in (1/2, 3/2) runs once through r in (0, 1)": ray_m3((HALF, THREE_HALVES)).holds,
+            "0 < lambda < 1": positive_on(rate, m, HALF, THREE_HALVES) and positive_on(1 - rate, m, HALF, THREE_HALVES),
+            "mu > 1": positive_on(multiplier - 1, m, HALF, THREE_HALVES),
+            f"limits {ends[0]}, {ends[1]} as r -> 0 and {ends[2]}, {ends[3]} as r -> 1": ends == stated,
+        }
     )
 
 
 def _direction(stated: tuple[int, int]) -> Check:
     """The eigenvector of Dh'(0, m3) for mu, whatever * is."""
     matrix = sympy.Matrix([list(fold.Dh_blown_up().row(0)), sympy.symbols("star mu")])
-    return every([("Dh' v = mu v for the direction stated, for any *", is_eigenvector(matrix, matrix[1, 1], stated))])
+    return every({"Dh' v = mu v for the direction stated, for any *": is_eigenvector(matrix, matrix[1, 1], stated)})
 
 
 def _tangent(stated: tuple[sympy.Expr, int]) -> Check:
@@ -193,10 +187,10 @@ def _tangent(stated: tuple[sympy.Expr, int]) -> Check:
     derived = sympy.diff(s * (start + bend * s), s).subs(s, 0)  # eta = s m(s) with m(s) = m_3 + c s + ...
     value = sympy.Poly(fold.fixed_point_factors()[1].subs(r, HALF), m).nroots(n=20)[2]
     return every(
-        [
-            ("the tangent at the origin has slope m(0) = m3 in (1/2, 3/2)", slope == derived),
-            ("for sigma < 0 the sign of eta = m sigma is -", positive_on(m, m, HALF, THREE_HALVES) and sign == -1),
-        ],
+        {
+            "the tangent at the origin has slope m(0) = m3 in (1/2, 3/2)": slope == derived,
+            "for sigma < 0 the sign of eta = m sigma is -": positive_on(m, m, HALF, THREE_HALVES) and sign == -1,
+        },
         witness=lambda: {"r": "1/2", "slope of the tangent": str(value), "stated slope": str(slope)},
     )
 

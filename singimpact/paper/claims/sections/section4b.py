@@ -164,7 +164,7 @@ def _range(stated: sympy.Expr) -> Check:
     short = sympy.factor(sympy.cancel((launch / -k).subs(ell, stated)) - sympy.Rational(9, 4) * r)
     small = short.subs(k, -sympy.Rational(1, 100)) if short.has(k) else short
     return every(
-        [(f"3l + l^2 - (9/4) r at the last ray is {short}, positive for every k < 0", positive_on(small, r, 0, 1))],
+        {f"3l + l^2 - (9/4) r at the last ray is {short}, positive for every k < 0": positive_on(small, r, 0, 1)},
         witness=lambda: {
             "k": "-1/100",
             "r": "1/2",
@@ -316,7 +316,7 @@ def _below_one(stated: sympy.Expr) -> Check:
 def _r_inequality(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
     small, large = stated
     return every(
-        [("the difference is positive on (0, 1) (no root inside, by Sturm)", positive_on(large - small, r, 0, 1))],
+        {"the difference is positive on (0, 1) (no root inside, by Sturm)": positive_on(large - small, r, 0, 1)},
         witness=lambda: {
             "r": "1/2",
             "left": str(small.subs(r, sympy.Rational(1, 2))),
@@ -330,10 +330,10 @@ def _contracted(stated: sympy.Expr) -> Check:
     launch, landed = on_ray()
     limit = sympy.cancel(landed / launch)
     return every(
-        [
-            ("0 < lim q~/p~ < 1 for l > 0, 0 < r < 1", _positive_for_all(limit) and _positive_for_all(stated - limit)),
-            ("1 is reached as l -> 0, r -> 1, and no smaller bound serves all", limit.subs({ell: 0, r: 1}) == stated),
-        ]
+        {
+            "0 < lim q~/p~ < 1 for l > 0, 0 < r < 1": _positive_for_all(limit) and _positive_for_all(stated - limit),
+            "1 is reached as l -> 0, r -> 1, and no smaller bound serves all": limit.subs({ell: 0, r: 1}) == stated,
+        }
     )
 
 

@@ -42,10 +42,10 @@ def _phi(stated: tuple[sympy.Expr, sympy.Expr]) -> Check:
     """phi in (s, m): the time of landing, and its velocity from the solution of the boundary value problem."""
     ray = {sigma: s, t: s * m}
     return every(
-        [
-            ("it lands at sigma + t", agree(sigma + t, ray, stated[0])),
-            ("with the launch velocity after the involution", agree(_sheet("phi"), ray, stated[1])),
-        ]
+        {
+            "it lands at sigma + t": agree(sigma + t, ray, stated[0]),
+            "with the launch velocity after the involution": agree(_sheet("phi"), ray, stated[1]),
+        }
     )
 
 
@@ -56,10 +56,10 @@ def _coordinates(time: sympy.Expr) -> Check:
     stated = (ell * s**3 * swan.p_blown_up()[1], ell * s**3 * swan.phi_blown_up()[1])
     point = {s: 1, m: -HALF, ell: 1}
     return every(
-        [
-            ("p has the printed form", is_zero(launch - stated[0])),
-            ("phi has the printed form", is_zero(impact - stated[1])),
-        ],
+        {
+            "p has the printed form": is_zero(launch - stated[0]),
+            "phi has the printed form": is_zero(impact - stated[1]),
+        },
         witness=lambda: {
             "s": "1",
             "m": "-1/2",
@@ -78,11 +78,11 @@ def _intersections(count: int) -> Check:
     one = value_at(rule, m, -1) == 0 and value_at(rule, m, 0) == 1 and positive_on(sympy.diff(rule, m), m, -1, 0)
     beyond = positive_on(rule - 1, m, 0, sympy.oo) and negative_on(rule, m, -sympy.oo, -1)
     return every(
-        [
-            ("r(m) rises from 0 to 1 on (-1, 0): one common point there for every r in (0, 1)", one),
-            ("r(m) > 1 for m > 0 and r(m) < 0 for m < -1: none there", beyond),
-            ("f(0) = g(0) = 0: m = 0, the axis Pi_0, is another" if zero else "f(0) != g(0)", count == 1 + int(zero)),
-        ],
+        {
+            "r(m) rises from 0 to 1 on (-1, 0): one common point there for every r in (0, 1)": one,
+            "r(m) > 1 for m > 0 and r(m) < 0 for m < -1: none there": beyond,
+            "f(0) = g(0) = 0: m = 0, the axis Pi_0, is another" if zero else "f(0) != g(0)": count == 1 + int(zero),
+        },
         witness=lambda: {"m": "0", "f": str(swan.f_map().subs(m, 0)), "g": str(swan.g_map().subs(m, 0))},
     )
 
@@ -112,7 +112,7 @@ def _slopes(sign: int) -> Check:
     """f'(m_*) - g'(m_*) with r eliminated, on (-1, 0)."""
     difference = sympy.cancel((sympy.diff(swan.f_map(), m) - sympy.diff(swan.g_map(), m)).subs(r, swan.r_of_m()))
     found = 1 if positive_on(difference, m, -1, 0) else -1 if negative_on(difference, m, -1, 0) else 0
-    return every([("f' - g' at m_* keeps one sign on (-1, 0), that is for every r in (0, 1)", found == sign)])
+    return every({"f' - g' at m_* keeps one sign on (-1, 0), that is for every r in (0, 1)": found == sign})
 
 
 def _jacobian(stated: sympy.MatrixBase) -> Check:
@@ -129,10 +129,10 @@ def _saddle(stated: tuple[int, int]) -> Check:
     inside = int(positive_on(rate, m, -1, 0) and positive_on(1 - rate, m, -1, 0))
     above = int(positive_on(multiplier - 1, m, -1, 0))
     return every(
-        [
-            ("1 + m_* in (0, 1) and f'/g' > 1 for every r in (0, 1)", (inside, above) == stated),
-            ("s' = (1 + m) s, so s = 0 is invariant, and carries f'/g'", swan.Dh_bar()[0, 1] == 0),
-        ]
+        {
+            "1 + m_* in (0, 1) and f'/g' > 1 for every r in (0, 1)": (inside, above) == stated,
+            "s' = (1 + m) s, so s = 0 is invariant, and carries f'/g'": swan.Dh_bar()[0, 1] == 0,
+        }
     )
 
 
@@ -249,10 +249,10 @@ def _limit(stated: sympy.Expr) -> Check:
         return f"true orbits give {orbit:.6f} at r = 1/2, the statement {value:.6f}", abs(orbit / value - 1) < REACHED
 
     return every(
-        [
-            ("it is a root of the characteristic polynomial of DG on gamma for every r", is_zero(residual)),
-            ("and the one above 1: so it is at lambda = 1/2, and no root passes 1", above_one(stated, 2)),
-        ],
+        {
+            "it is a root of the characteristic polynomial of DG on gamma for every r": is_zero(residual),
+            "and the one above 1: so it is at lambda = 1/2, and no root passes 1": above_one(stated, 2),
+        },
         tried=trial,
         witness=lambda: {
             "r": "1/2",

@@ -118,7 +118,7 @@ def _second_derivative(order: int) -> Check:
     at_rest = -2 * sympy.diff(v_c_swan(3), t).subs(t, 0)  # v_c = -a t/2 + O(t^2)
     values = [sympy.diff(at_rest, sigma, n).subs(sigma, 0) for n in range(3)]
     return every(
-        [(f"at a swan a = {values[0]}, a' = {values[1]}, a'' = {values[2]}: only a'' has a sign", values[order] != 0)],
+        {f"at a swan a = {values[0]}, a' = {values[1]}, a'' = {values[2]}: only a'' has a sign": values[order] != 0},
         witness=lambda: {"a at tau_*": str(values[0]), "a_d2 at tau_*": f"{values[2]}, not 0"},
     )
 
@@ -142,7 +142,7 @@ def _none(sign: int) -> Check:
 def _symmetric(stated: int) -> Check:
     v = model.launch_velocity()
     mirrored = v.subs({sigma: -sigma, t: -t}, simultaneous=True)
-    return every([("v(-sigma, -t) = -v(sigma, t)", same(mirrored, stated * v))])
+    return every({"v(-sigma, -t) = -v(sigma, t)": same(mirrored, stated * v)})
 
 
 def _ends(stated: tuple[int, int]) -> Check:

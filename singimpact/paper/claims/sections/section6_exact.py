@@ -164,15 +164,12 @@ def visible_check(stated: tuple[Sequence[Arc], int]) -> Check:
     inside = [sum(_left_of(p, arc) for arc in arcs) % 2 for p in points]
     wrong = sum((odd == parity) != (not gone) for odd, gone in zip(inside, hidden, strict=True))
     return every(
-        [
-            ("q(0) is Z and q(t) is H", same(q.subs(u, 0), model.zero_set()) and same(q.subs(u, t), model.horizon())),
-            (f"the arcs end at {sorted(set(corners))}, and follow one another there", closed and len(corners) == 6),
-            (
-                f"of {len(points)} cells with v > 0 that the conics Z, H and shadow cut out {sum(hidden)} are hidden, "
-                f"{wrong} not as said",
-                wrong == 0 and 0 < sum(hidden) < len(points),
-            ),
-        ],
+        {
+            "q(0) is Z and q(t) is H": same(q.subs(u, 0), model.zero_set()) and same(q.subs(u, t), model.horizon()),
+            f"the arcs end at {sorted(set(corners))}, and follow one another there": closed and len(corners) == 6,
+            f"of {len(points)} cells with v > 0 that the conics Z, H and shadow cut out {sum(hidden)} are hidden, "
+            f"{wrong} not as said": wrong == 0 and 0 < sum(hidden) < len(points),
+        },
         witness=lambda: _first_wrong(points, hidden, inside, parity),
     )
 

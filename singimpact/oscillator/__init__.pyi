@@ -1,0 +1,14 @@
+"""Names that `oscillator` hands on, with their homes: `__init__.py` loads each from here when it is used."""
+
+from singimpact.oscillator.linear import linear_form as linear_form
+from singimpact.oscillator.model import (
+    FIELDS as FIELDS,
+    Oscillator as Oscillator,
+    fields_of as fields_of,
+    read_fields as read_fields,
+    require_model as require_model,
+    require_rebound as require_rebound,
+)
+from singimpact.oscillator.moving_number import value_of as value_of, with_number as with_number
+from singimpact.oscillator.rebound import rho_of as rho_of
+from singimpact.oscillator.wall_acceleration import acceleration as acceleration
