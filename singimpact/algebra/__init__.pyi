@@ -8,6 +8,7 @@ from singimpact.algebra.balls import (
     ball_of as ball_of,
 )
 from singimpact.algebra.certificates import (
+    Box as Box,
     collected as collected,
     definite as definite,
     identical as identical,
@@ -23,6 +24,7 @@ from singimpact.algebra.derivatives import derivative as derivative
 from singimpact.algebra.expressions import (
     FOLDING as FOLDING,
     Expression as Expression,
+    Name as Name,
     Number as Number,
     Root as Root,
     evaluate as evaluate,

@@ -18,7 +18,12 @@ from singimpact.dynamics.basins_of_attraction import (
 from singimpact.dynamics.basins_over import BasinsOver as BasinsOver
 from singimpact.dynamics.behaviours import LongRun as LongRun, matched as matched
 from singimpact.dynamics.bifurcation_diagram import Bifurcation as Bifurcation, bifurcation as bifurcation
-from singimpact.dynamics.chatter import ENDING as ENDING, chatter_left as chatter_left, chatter_limit as chatter_limit
+from singimpact.dynamics.chatter import (
+    ENDING as ENDING,
+    ChatterLimit as ChatterLimit,
+    chatter_left as chatter_left,
+    chatter_limit as chatter_limit,
+)
 from singimpact.dynamics.enclosed import end_of_gamma as end_of_gamma, guided as guided, newton as newton
 from singimpact.dynamics.fit import Fit as Fit
 from singimpact.dynamics.gamma_proof.folded import Models as Models
@@ -38,6 +43,7 @@ from singimpact.dynamics.gamma_proof.lemmas import (
     rational as rational,
 )
 from singimpact.dynamics.gamma_proof.proof import (
+    CertifiedGamma as CertifiedGamma,
     certified_gamma as certified_gamma,
     flights_before as flights_before,
     phase_below as phase_below,
