@@ -23,11 +23,15 @@ from singimpact.branches.enclosed_closing import (
     closed_boxes as closed_boxes,
 )
 from singimpact.branches.enclosed_crossing import EnclosedCrossing as EnclosedCrossing
-from singimpact.branches.enclosed_event import rate_over as rate_over
+from singimpact.branches.enclosed_event import EnclosedEvent as EnclosedEvent, rate_over as rate_over
 from singimpact.branches.event_curve import EventCurve as EventCurve
 from singimpact.branches.events import KINDS as KINDS, Event as Event, EventKind as EventKind, kind_of as kind_of
 from singimpact.branches.homoclinic import Crossing as Crossing, Crossings as Crossings, crossings as crossings
-from singimpact.branches.horseshoe import CrossedSet as CrossedSet, Horseshoe as Horseshoe
+from singimpact.branches.horseshoe import (
+    CrossedSet as CrossedSet,
+    Horseshoe as Horseshoe,
+    HorseshoeFamily as HorseshoeFamily,
+)
 from singimpact.branches.krawczyk import EnclosedOrbit as EnclosedOrbit, Krawczyk as Krawczyk
 from singimpact.branches.manifold import Manifold as Manifold
 from singimpact.branches.orbits import PeriodicOrbit as PeriodicOrbit

@@ -11,17 +11,23 @@ from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from singimpact.algebra.balls import Balls
-from singimpact.algebra.derivatives import derivative
-from singimpact.algebra.expressions import Expression, evaluate, names_in, number, subtract
-from singimpact.flights.enclosures.certified_hit import Launch, ProvedImpact, certified_hit
-from singimpact.flights.enclosures.equation import Refused, programs_of
-from singimpact.flights.enclosures.jet_flight import JetHit, jet_hit
-from singimpact.flights.enclosures.timed_flight import Arrival, Walls, timed_flight, touches_first
-from singimpact.flights.horizons import horizon_of
+from singimpact.algebra import Balls, Expression, derivative, evaluate, names_in, number, subtract
+from singimpact.flights import (
+    Arrival,
+    JetHit,
+    Launch,
+    ProvedImpact,
+    Refused,
+    Walls,
+    certified_hit,
+    horizon_of,
+    jet_hit,
+    programs_of,
+    timed_flight,
+    touches_first,
+)
 from singimpact.handed_on import flint
-from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.moving_number import period_over
+from singimpact.oscillator import Oscillator, period_over
 
 SPARE = 6  # digits of a flight beside those of the states
 POINT = (Fraction(0), Fraction(0))

@@ -12,9 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.certified import text_of
-from singimpact.algebra.numbers import EPSILON, as_float, compare
-from singimpact.algebra.solving import halved
+from singimpact.algebra import EPSILON, as_float, compare, halved, text_of
 from singimpact.branches.border_digits import in_digits
 from singimpact.branches.branch import interval
 from singimpact.branches.cascade import Cascade, cascade
@@ -24,8 +22,7 @@ from singimpact.dynamics.long_run import rising_zeros
 from singimpact.dynamics.threshold import threshold
 from singimpact.flights.impact_map import checked_digits
 from singimpact.inputs import InputError, checked_keywords, require, whole
-from singimpact.oscillator.model import Oscillator, require_rebound
-from singimpact.oscillator.moving_number import RESTITUTION, value_of, with_number
+from singimpact.oscillator import RESTITUTION, Oscillator, require_rebound, value_of, with_number
 from singimpact.result import Result, Results
 from singimpact.status import Status
 from singimpact.surface.curve import window_ends

@@ -14,12 +14,20 @@ from itertools import islice
 from math import ceil, isfinite, log10
 from typing import Any, NamedTuple
 
-from singimpact.algebra.balls import BITS_A_DIGIT, Balls, as_rational
-from singimpact.algebra.certified import Certified, from_ends
-from singimpact.algebra.expressions import Number
-from singimpact.algebra.numbers import exact
-from singimpact.algebra.precision import Ladder, balls_at, digits_at, for_user
-from singimpact.algebra.solving import newton_in_balls
+from singimpact.algebra import (
+    BITS_A_DIGIT,
+    Balls,
+    Certified,
+    Ladder,
+    Number,
+    as_rational,
+    balls_at,
+    digits_at,
+    exact,
+    for_user,
+    from_ends,
+    newton_in_balls,
+)
 from singimpact.branches.resting import Return, clock
 from singimpact.contact.zero_ahead import ContactZero, next_zero
 from singimpact.dynamics.enclosed import enclosable, end_of_gamma, searched, side

@@ -21,8 +21,7 @@ from singimpact.branches.orbits import OfImpacts, PeriodicOrbit
 from singimpact.branches.solutions import AnyClosing, closing_of, orbit_of, point_of
 from singimpact.branches.step_search import Crossing, EventTests, Key, StepSearch, Tests
 from singimpact.inputs import InputError, checked_keywords, refuse, require, takes_two_walls, whole
-from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION, UPPER, value_of, with_number
+from singimpact.oscillator import CLEARANCE, RESTITUTION, UPPER, Oscillator, value_of, with_number
 from singimpact.result import numbered
 from singimpact.store import cache_folder
 

@@ -15,19 +15,24 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from singimpact.algebra.balls import as_rational
-from singimpact.algebra.certified import Certified, from_ball
-from singimpact.algebra.expressions import names_in
+from singimpact.algebra import (
+    Array,
+    Certified,
+    as_rational,
+    balls_at,
+    from_ball,
+    names_in,
+    rational_ends,
+    series_of_any_length,
+    sign_of,
+)
 from singimpact.algebra.isolated_zeros import SETTINGS as BOXES, Place, zeros_of
-from singimpact.algebra.numbers import Array, rational_ends, sign_of
-from singimpact.algebra.precision import balls_at, series_of_any_length
 from singimpact.branches.clearance_curves import Ball, ClearanceCurve, OrbitOnCurve, Series
 from singimpact.branches.events.graze import GRAZE, INTERIOR_GRAZE
 from singimpact.branches.events.unit_multipliers import FOLD, PERIOD_DOUBLING
 from singimpact.handed_on import flint
 from singimpact.inputs import checked_keywords, require, whole
-from singimpact.oscillator.linear import linear_form
-from singimpact.oscillator.model import Oscillator, require_model
+from singimpact.oscillator import Oscillator, linear_form, require_model
 from singimpact.result import Result
 
 SEARCH = replace(BOXES, least=Fraction(1, 2**24), lost=40)

@@ -17,12 +17,10 @@ from math import atan2, comb, isfinite, pi
 from operator import mul
 from typing import Any
 
-from singimpact.algebra.balls import Balls
-from singimpact.algebra.expressions import evaluate
+from singimpact.algebra import Balls, evaluate
 from singimpact.handed_on import flint
 from singimpact.inputs import InputError, need
-from singimpact.oscillator.linear import linear_form
-from singimpact.oscillator.model import Oscillator
+from singimpact.oscillator import Oscillator, linear_form
 
 TERMS = 5  # of Taylor series about the middle of an interval of p; the rest is taken over the interval
 LENGTH = TERMS + 2  # of series of the motion: where a zero is divided out one term is lost

@@ -17,8 +17,7 @@ import numpy as np
 
 from singimpact.algebra.numbers import Array
 from singimpact.branches.continuation import cubic_between
-from singimpact.flights.derivative import log_determinant
-from singimpact.flights.family import Family, Number, Values
+from singimpact.flights import Family, Number, Values, log_determinant
 from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION
 
 NEAR = 0.1  # a minimum of x - c is refined when it is below this part of the largest height

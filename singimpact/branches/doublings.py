@@ -10,8 +10,7 @@ from singimpact.algebra.numbers import Array
 from singimpact.branches.branch import Branch, branch
 from singimpact.branches.events import PERIOD_DOUBLING, Event
 from singimpact.inputs import checked_keywords, refuse, takes_two_walls, whole
-from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.moving_number import value_of
+from singimpact.oscillator import Oscillator, value_of
 from singimpact.result import Result
 
 # Parts of the distance between the last two doublings within which the next one is looked for, the nearest first; of

@@ -13,14 +13,20 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.balls import Balls
-from singimpact.algebra.expressions import evaluate
+from singimpact.algebra import Array, Balls, as_float, balls_at, evaluate, series_of_any_length
 from singimpact.algebra.isolated_zeros import SETTINGS as BOXES, IsolatedZeros, Place, zeros_of
-from singimpact.algebra.numbers import Array, as_float
-from singimpact.algebra.precision import balls_at, series_of_any_length
-from singimpact.flights.enclosures.equation import Equation, Refused, programs_of
-from singimpact.flights.enclosures.motion import CarriedMotion, Met, Start
-from singimpact.flights.enclosures.tube import Tube, centre, divided, narrowed
+from singimpact.flights import (
+    CarriedMotion,
+    Equation,
+    Met,
+    Refused,
+    Start,
+    Tube,
+    centre,
+    divided,
+    narrowed,
+    programs_of,
+)
 from singimpact.handed_on import flint
 from singimpact.inputs import need
 from singimpact.oscillator.model import Oscillator

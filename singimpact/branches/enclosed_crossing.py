@@ -17,16 +17,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from singimpact.algebra.balls import BITS_A_DIGIT
-from singimpact.algebra.certified import Certified, from_ball
-from singimpact.algebra.numbers import Array, exact
-from singimpact.algebra.precision import balls_at
+from singimpact.algebra import BITS_A_DIGIT, Array, Certified, balls_at, exact, from_ball
 from singimpact.branches.krawczyk import KRAWCZYK, EnclosedOrbit, Image, Krawczyk, proved, upper
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.saddle_cones import Cones, Pair, smooth
 from singimpact.dynamics.invariant_arcs import model_step
-from singimpact.flights.enclosures.certified_hit import ProvedImpact
-from singimpact.flights.enclosures.equation import Refused
+from singimpact.flights import ProvedImpact, Refused
 from singimpact.handed_on import flint
 from singimpact.inputs import need
 from singimpact.oscillator.model import Oscillator

@@ -21,9 +21,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from singimpact.algebra.balls import BITS_A_DIGIT, Balls, as_rational
-from singimpact.algebra.certified import Certified, from_ball
-from singimpact.algebra.precision import balls_at
+from singimpact.algebra import BITS_A_DIGIT, Balls, Certified, as_rational, balls_at, from_ball
 from singimpact.branches.ball_closing import BallClosing, TouchingClosing, return_slope
 from singimpact.branches.events.table import kind_of
 from singimpact.branches.krawczyk import KRAWCZYK, Krawczyk, Point

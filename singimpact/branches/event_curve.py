@@ -18,8 +18,7 @@ from singimpact.branches.orbit_curve import SETTINGS, OrbitCurve, places
 from singimpact.branches.orbits import OfImpacts
 from singimpact.branches.solutions import AnyClosing, closing_of, point_of
 from singimpact.inputs import checked_keywords, refuse, require, takes_two_walls, whole
-from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION, UPPER, value_of, with_number
+from singimpact.oscillator import CLEARANCE, RESTITUTION, UPPER, Oscillator, value_of, with_number
 from singimpact.result import Result, numbered
 
 # Names of points of codimension two in MatCont and MatContM.

@@ -6,13 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.expressions import names_in
-from singimpact.algebra.numbers import Array
+from singimpact.algebra import Array, names_in
 from singimpact.branches.periodic import SETTINGS as PERIODIC, periodic
 from singimpact.branches.starts import one_impact
-from singimpact.dynamics.families import OscillatorFamily, in_parts
-from singimpact.dynamics.lives import Lives, Stretch
-from singimpact.dynamics.lyapunov import Growth
+from singimpact.dynamics import Growth, Lives, OscillatorFamily, Stretch, in_parts
 from singimpact.flights.family import LinearFamily, family
 from singimpact.flights.members import Members
 from singimpact.inputs import refuse, whole

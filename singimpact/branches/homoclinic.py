@@ -19,8 +19,7 @@ from singimpact.branches.cylinder import apart, meetings
 from singimpact.branches.manifold import Manifold, manifold
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.saddle_arcs import LocalArc, checked_saddle
-from singimpact.dynamics.growth import Piece
-from singimpact.dynamics.invariant_arcs import before, model_step
+from singimpact.dynamics import Piece, before, model_step
 from singimpact.flights.derivative import derivative
 from singimpact.flights.impact_map import checked_digits
 from singimpact.inputs import InputError, checked_keywords, refuse, require

@@ -23,8 +23,7 @@ from singimpact.branches.solutions import orbit_period
 from singimpact.dynamics.invariant_arcs import model_step
 from singimpact.flights.family import family
 from singimpact.inputs import InputError, checked_keywords, need, require
-from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.moving_number import value_of, with_number
+from singimpact.oscillator import Oscillator, value_of, with_number
 from singimpact.result import Result
 
 NUDGE = 1e-6  # half the width of the difference by the number

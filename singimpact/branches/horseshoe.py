@@ -28,11 +28,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from singimpact.algebra.balls import BITS_A_DIGIT, as_rational
-from singimpact.algebra.certified import Certified, from_ball
-from singimpact.algebra.expressions import names_in
-from singimpact.algebra.numbers import Array, rational_ends
-from singimpact.algebra.precision import balls_at
+from singimpact.algebra import BITS_A_DIGIT, Array, Certified, as_rational, balls_at, from_ball, names_in, rational_ends
 from singimpact.branches.ball_closing import POINT, EnclosedMap
 from singimpact.branches.enclosed_crossing import prolonged
 from singimpact.branches.krawczyk import least, proved, upper
@@ -43,8 +39,7 @@ from singimpact.flights.derivative import derivative, sensitivity
 from singimpact.flights.enclosures.equation import Refused
 from singimpact.handed_on import flint
 from singimpact.inputs import need, require
-from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.moving_number import RESTITUTION, period_over, value_of, with_number
+from singimpact.oscillator import RESTITUTION, Oscillator, period_over, value_of, with_number
 from singimpact.result import Result
 
 

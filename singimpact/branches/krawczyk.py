@@ -16,9 +16,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from singimpact.algebra.balls import BITS_A_DIGIT, Balls, as_rational
-from singimpact.algebra.certified import Certified, from_ball
-from singimpact.algebra.precision import balls_at
+from singimpact.algebra import BITS_A_DIGIT, Balls, Certified, as_rational, balls_at, from_ball
 from singimpact.branches.ball_closing import BallClosing, return_slope
 from singimpact.flights.enclosures.equation import Refused
 from singimpact.handed_on import flint

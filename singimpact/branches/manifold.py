@@ -12,8 +12,7 @@ from singimpact.branches.cylinder import Nearby, apart, distances
 from singimpact.branches.orbits import Notes, PeriodicOrbit
 from singimpact.branches.saddle_arcs import LocalArc, checked_saddle, directions, local_arc
 from singimpact.branches.solutions import orbit_period
-from singimpact.dynamics.growth import LEFT, LOST, NATURAL, TORN, Carried, Piece
-from singimpact.dynamics.invariant_arcs import before, model_step
+from singimpact.dynamics import LEFT, LOST, NATURAL, TORN, Carried, Piece, before, model_step
 from singimpact.flights.results import counted
 from singimpact.inputs import checked_keywords, require
 from singimpact.oscillator.wall_acceleration import acceleration, largest_push

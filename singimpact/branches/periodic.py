@@ -15,11 +15,20 @@ from typing import Any
 
 import numpy as np
 
-from singimpact.algebra.balls import BITS_A_DIGIT, as_rational
-from singimpact.algebra.expressions import names_in
-from singimpact.algebra.isolated_zeros import IsolatedZeros
-from singimpact.algebra.numbers import Array, as_float, constant, near_rational, rational_ends
-from singimpact.algebra.precision import balls_at, digits_at, for_user
+from singimpact.algebra import (
+    BITS_A_DIGIT,
+    Array,
+    IsolatedZeros,
+    as_float,
+    as_rational,
+    balls_at,
+    constant,
+    digits_at,
+    for_user,
+    names_in,
+    near_rational,
+    rational_ends,
+)
 from singimpact.branches.ball_closing import BallClosing, return_slope
 from singimpact.branches.closing import Closing
 from singimpact.branches.enclosed_closing import closed_boxes
@@ -30,12 +39,10 @@ from singimpact.branches.resting import chatter_orbits, free_orbits
 from singimpact.branches.solutions import closing_of, cycles_found, orbit_at
 from singimpact.branches.starts import closed_from, grid_of_starts, phases_and_speeds, two_impacts
 from singimpact.branches.wall_closing import closed_words, closing_of_word, word_of
-from singimpact.flights.enclosures.equation import Refused
+from singimpact.flights import Refused, checked_digits
 from singimpact.flights.family import family
-from singimpact.flights.impact_map import checked_digits
 from singimpact.inputs import InputError, refuse, require
-from singimpact.oscillator.linear import linear_form
-from singimpact.oscillator.model import Oscillator, require_rebound
+from singimpact.oscillator import Oscillator, linear_form, require_rebound
 from singimpact.status import Status
 
 

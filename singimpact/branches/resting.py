@@ -10,17 +10,12 @@ from singimpact.branches.closing import FreeClosing, lowest
 from singimpact.branches.orbits import Notes, PeriodicOrbit, PeriodicOrbits, chatter_orbit
 from singimpact.contact.contact import acceleration as a_c
 from singimpact.contact.points import window
-from singimpact.dynamics.chatter import ENDING, chatter_left
-from singimpact.dynamics.lift_off import release, turns_between
-from singimpact.dynamics.long_run import rising_zeros
+from singimpact.dynamics import ENDING, chatter_left, release, rising_zeros, turns_between
 from singimpact.dynamics.orbit import orbit
 from singimpact.flights.family import Family, family
 from singimpact.flights.impact_map import impact_map
 from singimpact.flights.orbits import orbit_segment
-from singimpact.oscillator.linear import linear_form
-from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.moving_number import CLEARANCE
-from singimpact.oscillator.wall_acceleration import acceleration
+from singimpact.oscillator import CLEARANCE, Oscillator, acceleration, linear_form
 from singimpact.status import Status
 
 SAME_PHASE = 1e-9  # lift-offs whose phases differ by less than this, of the period, are one

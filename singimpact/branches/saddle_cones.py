@@ -25,13 +25,11 @@ from functools import cached_property
 from math import frexp
 from typing import Any
 
-from singimpact.algebra.balls import as_rational
-from singimpact.algebra.numbers import exact
+from singimpact.algebra import as_rational, exact
 from singimpact.branches.ball_closing import POINT, EnclosedMap
 from singimpact.branches.krawczyk import enclosed_orbit, upper
 from singimpact.branches.orbits import PeriodicOrbit
-from singimpact.flights.enclosures.certified_hit import ProvedImpact
-from singimpact.flights.enclosures.equation import Refused
+from singimpact.flights import ProvedImpact, Refused
 from singimpact.handed_on import flint
 from singimpact.inputs import need
 

@@ -11,14 +11,10 @@ from singimpact.branches.closing import Closing, Flown, FreeClosing
 from singimpact.branches.orbits import PeriodicOrbit
 from singimpact.branches.resting import free_orbit_at
 from singimpact.branches.wall_closing import WallClosing, closing_of_word
+from singimpact.flights import at_walls, fastest_rate, iterates
 from singimpact.flights.family import family
 from singimpact.flights.impact_map import impact_map
-from singimpact.flights.model_numbers import fastest_rate
-from singimpact.flights.orbits import iterates
-from singimpact.flights.walls import at_walls
-from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION
-from singimpact.oscillator.wall_acceleration import acceleration_at
+from singimpact.oscillator import CLEARANCE, RESTITUTION, Oscillator, acceleration_at
 from singimpact.status import Status
 
 AnyClosing = Closing | FreeClosing

@@ -24,24 +24,30 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from singimpact.algebra.analytic import Recorder
-from singimpact.algebra.balls import Balls
-from singimpact.algebra.derivatives import derivative
-from singimpact.algebra.expressions import Expression, Power, add, evaluate, multiply, number, substitute, subtract
+from singimpact.algebra import (
+    DOUBLES,
+    Array,
+    Balls,
+    Expression,
+    Power,
+    Recorder,
+    add,
+    as_float,
+    balls_at,
+    derivative,
+    evaluate,
+    multiply,
+    number,
+    substitute,
+    subtract,
+)
 from singimpact.algebra.isolated_zeros import SETTINGS as BOXES, IsolatedZeros, isolated_zeros
-from singimpact.algebra.numbers import Array, as_float
-from singimpact.algebra.precision import balls_at
-from singimpact.algebra.rings import DOUBLES
 from singimpact.branches.closing import Closing
 from singimpact.branches.resting import free_orbits
+from singimpact.flights import ends, rebound_slope, variations
 from singimpact.flights.family import LinearFamily, SteppedFamily, family
-from singimpact.flights.flight_path import ends
 from singimpact.flights.impact_map import impact_map
-from singimpact.flights.rebound_law import rebound_slope
-from singimpact.flights.response import variations
-from singimpact.oscillator.linear import TAU, T, linear_flight, linear_form
-from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.wall_acceleration import acceleration
+from singimpact.oscillator import TAU, Oscillator, T, acceleration, linear_flight, linear_form
 
 SEARCH = replace(BOXES, bits=64, least=Fraction(1, 2**18))
 EDGE = Fraction(1, 16)  # of the window of tau beyond each end of a period: no zero is on an edge

@@ -19,13 +19,9 @@ from singimpact.branches.orbits import PeriodicOrbit, same_states
 from singimpact.branches.periodic import periodic
 from singimpact.dynamics.basins_of_attraction import Basins, basins
 from singimpact.inputs import InputError, checked_keywords, need, refuse, require, takes_two_walls, whole
-from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.moving_number import RESTITUTION, with_number
-from singimpact.oscillator.wall_acceleration import largest_push
-from singimpact.surface.classification import default_window
-from singimpact.surface.curve import window_ends
+from singimpact.oscillator import RESTITUTION, Oscillator, largest_push, with_number
+from singimpact.surface import Transition, default_window, window_ends
 from singimpact.surface.outline_transitions import Transitions, at_wall as transitions_of_outline
-from singimpact.surface.swan_families import Transition
 
 SEEN_ALONE = ("tacnode", "triple point")  # transitions that part intervals only where they are visible
 WORDS = ("stable", "neutral", "unstable", "virtual")

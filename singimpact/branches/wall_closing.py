@@ -12,12 +12,10 @@ import numpy as np
 from singimpact.algebra.numbers import Array
 from singimpact.branches.closing import Closing, Leg, Turn, minima_of
 from singimpact.branches.starts import closed_from
+from singimpact.flights import gap_of, iterates
 from singimpact.flights.family import End, Family, Number, Values, family
-from singimpact.flights.flat_numbers import gap_of
-from singimpact.flights.orbits import iterates
 from singimpact.inputs import refuse
-from singimpact.oscillator.model import Oscillator
-from singimpact.oscillator.moving_number import CLEARANCE, RESTITUTION, UPPER, value_of
+from singimpact.oscillator import CLEARANCE, RESTITUTION, UPPER, Oscillator, value_of
 from singimpact.status import Status
 
 

@@ -9,16 +9,10 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from singimpact.algebra.certified import Certified, from_ball
-from singimpact.algebra.numbers import sign_of
-from singimpact.branches.border import BorderOrbit
-from singimpact.branches.enclosed_event import EnclosedEvent
-from singimpact.branches.horseshoe import Horseshoe, HorseshoeFamily
-from singimpact.branches.krawczyk import EnclosedOrbit
-from singimpact.branches.orbits import PeriodicOrbit
+from singimpact.algebra import Certified, from_ball, sign_of
+from singimpact.branches import BorderOrbit, EnclosedEvent, EnclosedOrbit, Horseshoe, HorseshoeFamily, PeriodicOrbit
 from singimpact.certificates import checker
-from singimpact.dynamics.chatter import ChatterLimit
-from singimpact.dynamics.gamma_proof.proof import CertifiedGamma
+from singimpact.dynamics import CertifiedGamma, ChatterLimit
 from singimpact.flights.results import CertifiedImpact, Flight
 from singimpact.inputs import InputError, checked_keywords, need, refuse, takes_two_walls, whole
 from singimpact.oscillator.model import Oscillator, require_rebound

@@ -1,5 +1,7 @@
 """Commands of the long run, over states and over numbers of a model: sweep, basins, bifurcation, regions, ensemble."""
 
+from __future__ import annotations
+
 from functools import partial
 from typing import Any
 

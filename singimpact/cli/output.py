@@ -94,12 +94,12 @@ def emit(text: str, output: str | None) -> None:
         write_text(output, text.rstrip("\n") + "\n")
 
 
-def give(data: Any, text: str, as_json: bool, output: str | None = None) -> None:
+def give(data: object, text: str, as_json: bool, output: str | None = None) -> None:
     """Print data as JSON where ``--json`` asks for it and a text otherwise, or write it to the given file."""
     emit(as_json_text(data) if as_json else text, output)
 
 
-def as_json_text(data: Any) -> str:
+def as_json_text(data: object) -> str:
     """Valid JSON: nan and inf become null, and the status beside them tells them apart.
 
     Examples
@@ -197,7 +197,9 @@ def save(figure: Any, output: str | Path, dpi: int = 150) -> None:
         figure.savefig(draft, format=kind, dpi=dpi, metadata=dated)
 
 
-def save_once(request: tuple[Any, ...], output: str | Path, make: Callable[[], tuple[Any, Any]], dpi: int = 150) -> Any:
+def save_once(
+    request: tuple[object, ...], output: str | Path, make: Callable[[], tuple[Any, Any]], dpi: int = 150
+) -> Any:
     """Write a picture, from the cache if it was drawn before, and return the text that is printed with it.
 
     Parameters
@@ -218,6 +220,6 @@ def save_once(request: tuple[Any, ...], output: str | Path, make: Callable[[], t
     return json.loads(values)
 
 
-def kept_at(asked: tuple[Any, ...], libraries: tuple[str, ...]) -> Path:
+def kept_at(asked: tuple[object, ...], libraries: tuple[str, ...]) -> Path:
     """Where the cache keeps what was drawn: under what was asked, the package, and the libraries that draw."""
     return cache_folder() / "pictures" / f"{cache.key_of(asked, ('numpy', *libraries))}.picture"

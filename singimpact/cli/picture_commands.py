@@ -116,8 +116,8 @@ def _transitions(
     oscillator: ImpactOscillator,
     wall: str | None,
     over: str,
-    between: tuple[str, str],
-    t: tuple[str, str] | None,
+    between: tuple[str, str] | None,
+    t: tuple[float, float],
     orbits: int | None,
 ) -> Transitions:
     """Without orbits nothing of branches is loaded, which takes 0.2 s."""

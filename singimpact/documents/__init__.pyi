@@ -19,9 +19,11 @@ from singimpact.documents.rendering import (
     as_latex as as_latex,
     as_markdown as as_markdown,
     as_text as as_text,
+    environment as environment,
     latex_text as latex_text,
     lines_of as lines_of,
     width as width,
+    wrapping as wrapping,
 )
 from singimpact.documents.series_documents import (
     SeriesRequest as SeriesRequest,

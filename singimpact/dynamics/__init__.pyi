@@ -18,8 +18,14 @@ from singimpact.dynamics.basins_of_attraction import (
 from singimpact.dynamics.basins_over import BasinsOver as BasinsOver
 from singimpact.dynamics.behaviours import LongRun as LongRun, matched as matched
 from singimpact.dynamics.bifurcation_diagram import Bifurcation as Bifurcation, bifurcation as bifurcation
-from singimpact.dynamics.chatter import ENDING as ENDING, chatter_left as chatter_left, chatter_limit as chatter_limit
+from singimpact.dynamics.chatter import (
+    ENDING as ENDING,
+    ChatterLimit as ChatterLimit,
+    chatter_left as chatter_left,
+    chatter_limit as chatter_limit,
+)
 from singimpact.dynamics.enclosed import end_of_gamma as end_of_gamma, guided as guided, newton as newton
+from singimpact.dynamics.families import OscillatorFamily as OscillatorFamily, in_parts as in_parts
 from singimpact.dynamics.fit import Fit as Fit
 from singimpact.dynamics.gamma_proof.folded import Models as Models
 from singimpact.dynamics.gamma_proof.gravity import (
@@ -38,12 +44,21 @@ from singimpact.dynamics.gamma_proof.lemmas import (
     rational as rational,
 )
 from singimpact.dynamics.gamma_proof.proof import (
+    CertifiedGamma as CertifiedGamma,
     certified_gamma as certified_gamma,
     flights_before as flights_before,
     phase_below as phase_below,
     ratio as ratio,
 )
-from singimpact.dynamics.growth import held as held
+from singimpact.dynamics.growth import (
+    LEFT as LEFT,
+    LOST as LOST,
+    NATURAL as NATURAL,
+    TORN as TORN,
+    Carried as Carried,
+    Piece as Piece,
+    held as held,
+)
 from singimpact.dynamics.invariant_arcs import (
     before as before,
     gammas_within as gammas_within,
@@ -51,8 +66,15 @@ from singimpact.dynamics.invariant_arcs import (
     model_step as model_step,
     stable_manifold as stable_manifold,
 )
-from singimpact.dynamics.lift_off import release as release
-from singimpact.dynamics.long_run import Future as Future, chaotic as chaotic, settled as settled
+from singimpact.dynamics.lift_off import release as release, turns_between as turns_between
+from singimpact.dynamics.lives import Lives as Lives, Stretch as Stretch
+from singimpact.dynamics.long_run import (
+    Future as Future,
+    chaotic as chaotic,
+    rising_zeros as rising_zeros,
+    settled as settled,
+)
+from singimpact.dynamics.lyapunov import Growth as Growth
 from singimpact.dynamics.orbit import Orbit as Orbit, Section as Section
 from singimpact.dynamics.regions import Regions as Regions
 from singimpact.dynamics.release_map import ReleaseMap as ReleaseMap

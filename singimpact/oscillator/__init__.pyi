@@ -1,6 +1,6 @@
 """Names that `oscillator` hands on, with their homes: `__init__.py` loads each from here when it is used."""
 
-from singimpact.oscillator.linear import linear_form as linear_form
+from singimpact.oscillator.linear import TAU as TAU, T as T, linear_flight as linear_flight, linear_form as linear_form
 from singimpact.oscillator.model import (
     FIELDS as FIELDS,
     Oscillator as Oscillator,
@@ -9,6 +9,17 @@ from singimpact.oscillator.model import (
     require_model as require_model,
     require_rebound as require_rebound,
 )
-from singimpact.oscillator.moving_number import value_of as value_of, with_number as with_number
+from singimpact.oscillator.moving_number import (
+    CLEARANCE as CLEARANCE,
+    RESTITUTION as RESTITUTION,
+    UPPER as UPPER,
+    period_over as period_over,
+    value_of as value_of,
+    with_number as with_number,
+)
 from singimpact.oscillator.rebound import rho_of as rho_of
-from singimpact.oscillator.wall_acceleration import acceleration as acceleration
+from singimpact.oscillator.wall_acceleration import (
+    acceleration as acceleration,
+    acceleration_at as acceleration_at,
+    largest_push as largest_push,
+)

@@ -62,6 +62,7 @@ from singimpact.theory.plane_forms import (
     HIGHEST as HIGHEST,
     HIGHEST_NUMBERS as HIGHEST_NUMBERS,
     FoldForm as FoldForm,
+    cubic_terms as cubic_terms,
     fold_form as fold_form,
     normal_form as normal_form,
 )

@@ -7,8 +7,7 @@ from typing import Any
 
 import sympy
 
-from singimpact.algebra.certificates import identical
-from singimpact.algebra.derivations import At, substitution
+from singimpact.algebra import At, identical, substitution
 from singimpact.paper.claims.claim import Check
 from singimpact.paper.routes.implicit import X, Y
 

@@ -11,8 +11,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from singimpact.documents.document_steps import Section, Step
-from singimpact.documents.rendering import PAGE, environment, lines_of, width
+from singimpact.documents import PAGE, Section, Step, environment, lines_of, width
 
 
 def section_of(name: str, formulas: Callable[[], Mapping[str, object]] = dict) -> Section:

@@ -4,8 +4,7 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 from singimpact import cache
-from singimpact.documents.document_steps import Mark, Section, Step, claims_of
-from singimpact.documents.rendering import wrapping
+from singimpact.documents import Mark, Section, Step, claims_of, wrapping
 from singimpact.paper.claims.index import places_in_paper
 from singimpact.paper.sections.section_templates import template_texts
 from singimpact.store import cache_folder

@@ -14,11 +14,7 @@ from typing import Any
 
 import sympy
 
-from singimpact.algebra.balls import Balls
-from singimpact.algebra.certificates import positive_on
-from singimpact.algebra.derivations import At, substitution
-from singimpact.algebra.parsing import parse
-from singimpact.algebra.precision import balls_at
+from singimpact.algebra import At, Balls, balls_at, parse, positive_on, substitution
 from singimpact.paper.claims.claim import Check, Encoding
 from singimpact.paper.claims.verifiers import every, identity
 

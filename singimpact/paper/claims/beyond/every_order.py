@@ -10,8 +10,7 @@ from typing import Any
 
 import sympy
 
-from singimpact.algebra.certificates import positive_in, positive_on
-from singimpact.algebra.derivations import At, substitution
+from singimpact.algebra import At, positive_in, positive_on, substitution
 from singimpact.paper.claims.claim import Check, Encoding
 from singimpact.paper.claims.sections.section4b import SLACK
 from singimpact.paper.claims.verifiers import every, is_zero, same

@@ -10,8 +10,7 @@ from singimpact.paper.claims.sections.section3 import NORMALLY_HYPERBOLIC
 from singimpact.paper.claims.verifiers import every, is_zero, same, sample
 from singimpact.paper.routes import first_order as route
 from singimpact.paper.routes.first_order import A2, A3, Change, damping, first, h, j, s, second
-from singimpact.theory.impact_sheet import generic_sheet
-from singimpact.theory.multipliers import launch_velocity
+from singimpact.theory import generic_sheet, launch_velocity
 
 X = sympy.Symbol("X")
 SHOWN = 3  # contact orders at which v_c is compared beside the identity for every j

@@ -11,9 +11,7 @@ from typing import Any
 
 import sympy
 
-from singimpact.algebra.derivations import At, substitution
-from singimpact.algebra.jets import Jet, JetSpace
-from singimpact.algebra.rings import Exact
+from singimpact.algebra import At, Exact, Jet, JetSpace, substitution
 from singimpact.contact.contact import Contact
 from singimpact.paper.claims.claim import Check, Encoding
 from singimpact.paper.claims.verifiers import every, same

@@ -11,8 +11,7 @@ from typing import Any
 
 import sympy
 
-from singimpact.algebra.certificates import positive_in
-from singimpact.algebra.derivations import At, substitution
+from singimpact.algebra import At, positive_in, substitution
 from singimpact.paper.claims.beyond.every_order import CLOSED_P, CLOSED_Q, L, closed_forms, ell, j
 from singimpact.paper.claims.claim import Check, Encoding
 from singimpact.paper.claims.verifiers import every, same, sample

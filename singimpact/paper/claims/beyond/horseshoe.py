@@ -9,8 +9,7 @@ from functools import cache
 from math import pi
 from typing import Any, NamedTuple
 
-from singimpact.algebra.certified import Certified
-from singimpact.algebra.numbers import exact
+from singimpact.algebra import Certified, exact
 from singimpact.branches.homoclinic import Crossing, homoclinic_points
 from singimpact.branches.periodic import periodic
 from singimpact.inputs import InputError

@@ -2,8 +2,7 @@
 
 import sympy
 
-from singimpact.algebra.certificates import positive_in
-from singimpact.algebra.derivations import At, substitution
+from singimpact.algebra import At, positive_in, substitution
 from singimpact.paper.claims.claim import Check, Encoding
 from singimpact.paper.claims.sections.section6_exact import persisting
 from singimpact.paper.claims.verifiers import every, is_zero, same

@@ -11,8 +11,7 @@ from singimpact.paper.claims.verifiers import agree, every, identity, is_zero
 from singimpact.paper.routes import implicit as route, unfolding as model, variations
 from singimpact.paper.routes.implicit import a_symbol, sigma, t, v
 from singimpact.paper.trials import surfaces
-from singimpact.theory.impact_sheet import generic_sheet
-from singimpact.theory.plane_forms import fold_form
+from singimpact.theory import fold_form, generic_sheet
 
 a, a1 = a_symbol(0), a_symbol(1)
 

@@ -5,10 +5,7 @@ from typing import Any
 
 import sympy
 
-from singimpact.algebra.derivations import At, substitution
-from singimpact.algebra.expressions import Name
-from singimpact.algebra.parsing import parse
-from singimpact.algebra.rings import to_sympy
+from singimpact.algebra import At, Name, parse, substitution, to_sympy
 from singimpact.contact.contact import rest_acceleration
 from singimpact.paper.claims.claim import Check, Encoding, Statement
 from singimpact.paper.claims.sections.section4_trials import TRIALS as TRIALS
@@ -16,8 +13,7 @@ from singimpact.paper.claims.verifiers import agree, every, identity, is_zero, r
 from singimpact.paper.routes import fold, implicit as route
 from singimpact.paper.routes.implicit import X, Y, a_symbol, f_symbol, sigma, t, v
 from singimpact.paper.trials import true_sheet
-from singimpact.theory.impact_sheet import generic_sheet
-from singimpact.theory.notation import latex
+from singimpact.theory import generic_sheet, latex
 
 a, a1, a2 = (a_symbol(n) for n in range(3))
 b = sympy.Symbol("b")  # the paper's b: d(x'')/dv at rest, so b = -f_01

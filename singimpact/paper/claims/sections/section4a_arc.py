@@ -15,8 +15,7 @@ from singimpact.paper.routes import fold, implicit as route
 from singimpact.paper.routes.fold import m
 from singimpact.paper.routes.implicit import a_symbol, t, v
 from singimpact.paper.trials import arcs, true_orbits
-from singimpact.theory.multipliers import DG_on_ray, eigenvalues_on_gamma, lambda_, leading_coefficient, r_of_lambda
-from singimpact.theory.notation import latex
+from singimpact.theory import DG_on_ray, eigenvalues_on_gamma, lambda_, latex, leading_coefficient, r_of_lambda
 
 REACHED = 1e-3  # relative error to which DOP853 finds a leading coefficient of gamma: double precision near Pi_0
 

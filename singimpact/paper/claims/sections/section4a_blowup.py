@@ -13,9 +13,7 @@ from singimpact.paper.claims.verifiers import every, identity, is_zero, sample
 from singimpact.paper.routes import fold
 from singimpact.paper.routes.fold import eta, k, m
 from singimpact.paper.routes.implicit import a_symbol, r, sigma, t
-from singimpact.theory.impact_sheet import generic_sheet
-from singimpact.theory.notation import latex
-from singimpact.theory.plane_forms import cubic_terms, fold_form
+from singimpact.theory import cubic_terms, fold_form, generic_sheet, latex
 
 HALF, THREE_HALVES, QUARTERS = sympy.Rational(1, 2), sympy.Rational(3, 2), sympy.Rational(9, 4)
 QUARTIC = m**2 * (m - HALF) ** 2

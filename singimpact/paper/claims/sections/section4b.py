@@ -2,8 +2,7 @@
 
 import sympy
 
-from singimpact.algebra.certificates import negative_on, positive_in, positive_on
-from singimpact.algebra.derivations import At, substitution
+from singimpact.algebra import At, negative_on, positive_in, positive_on, substitution
 from singimpact.paper.claims.claim import Check, Encoding
 from singimpact.paper.claims.sections.section4_trials import TRIALS as TRIALS
 from singimpact.paper.claims.verifiers import agree, every, identity, is_zero

@@ -13,8 +13,7 @@ from singimpact.paper.claims.verifiers import agree, every, identity, is_zero
 from singimpact.paper.routes import swan
 from singimpact.paper.routes.implicit import r, v
 from singimpact.paper.trials import arcs, true_orbits
-from singimpact.theory.impact_sheet import generic_sheet
-from singimpact.theory.multipliers import DG_on_ray, eigenvalues_on_gamma, lambda_, leading_coefficient, r_of_lambda
+from singimpact.theory import DG_on_ray, eigenvalues_on_gamma, generic_sheet, lambda_, leading_coefficient, r_of_lambda
 
 m, s, ell, mbar = swan.m, swan.s, swan.ell, swan.mbar
 a2, sigma, t = sympy.symbols("a_d2 sigma t")

@@ -6,10 +6,8 @@ from typing import Any
 
 import sympy
 
-from singimpact.algebra.certificates import definite, negative_on, positive_on
-from singimpact.algebra.derivations import At, substitution
-from singimpact.contact.points import tangency_points
-from singimpact.contact.swans import swan_points_over_clearance
+from singimpact.algebra import At, definite, negative_on, positive_on, substitution
+from singimpact.contact import swan_points_over_clearance, tangency_points
 from singimpact.impact_oscillator import linear
 from singimpact.oscillator.model import Oscillator
 from singimpact.paper.claims.claim import Check, Encoding, Trial, Trials, at_each

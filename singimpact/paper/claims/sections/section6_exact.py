@@ -17,8 +17,7 @@ from typing import Any, NamedTuple
 
 import sympy
 
-from singimpact.algebra.certificates import definite, negative_on, positive_in, sign_chain, value_at
-from singimpact.algebra.derivations import At, substitution
+from singimpact.algebra import At, definite, negative_on, positive_in, sign_chain, substitution, value_at
 from singimpact.paper.claims.claim import Check
 from singimpact.paper.claims.verifiers import every, same
 from singimpact.paper.routes import unfolding as model

@@ -14,8 +14,7 @@ from typing import Any
 
 import sympy
 
-from singimpact.algebra.certificates import Box, definite, positive_in, positive_on
-from singimpact.algebra.derivations import motion
+from singimpact.algebra import Box, definite, motion, positive_in, positive_on
 from singimpact.inputs import need
 from singimpact.paper.claims.claim import Check, Encoding
 from singimpact.paper.claims.sections.section3 import NORMALLY_HYPERBOLIC

@@ -6,8 +6,7 @@ from typing import Any
 
 import sympy
 
-from singimpact.algebra.certificates import negative_on
-from singimpact.algebra.derivations import At, substitution
+from singimpact.algebra import At, negative_on, substitution
 from singimpact.paper.claims.claim import Check, Encoding
 from singimpact.paper.claims.sections.section6 import TRIALS as TRIALS
 from singimpact.paper.claims.sections.section6_exact import (
