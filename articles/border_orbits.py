@@ -20,9 +20,7 @@ FAMILIES = {
     "$x'' + 0.3x' + x + x^3$": si.ImpactOscillator(
         "x + 0.3*xdot + x**3", "cos(1.7*t) + b*sin(3.4*t)", 0, "1/2", {"b": 0}
     ),
-    "$x'' + 0.1x' + \\sin x$": si.ImpactOscillator(
-        "sin(x) + 0.1*xdot", "cos(2*t) + b*sin(4*t)", 0, "1/2", {"b": 0}
-    ),
+    "$x'' + 0.1x' + \\sin x$": si.ImpactOscillator("sin(x) + 0.1*xdot", "cos(2*t) + b*sin(4*t)", 0, "1/2", {"b": 0}),
 }
 WINDOWS = (-0.9, 0.9), (-1, 1)  # of the clearance and of b
 DEPTHS = -0.1, -0.01, -0.001
@@ -85,7 +83,9 @@ def drawn(count: int) -> tuple[int, int]:
 def numbers(quick: bool) -> dict[str, Any]:
     """What the text prints."""
     digits = 16 if quick else 30
-    rates = ("0.05", "0.5") if quick else ("0.05", "0.1", "0.2", "0.3", "0.4", "0.5", "0.6", "0.7", "0.8", "0.9", "0.95")
+    rates = (
+        ("0.05", "0.5") if quick else ("0.05", "0.1", "0.2", "0.3", "0.4", "0.5", "0.6", "0.7", "0.8", "0.9", "0.95")
+    )
     series = [-225 * 19**0.5 / 13718, -2625 * 57**0.5 / 260642 - 225 * 38**0.5 / 109744]
     left = []
     for exponent in (4, 6) if quick else (4, 6, 8):

@@ -16,7 +16,7 @@ from jinja2 import FileSystemLoader
 
 from singimpact import __version__
 from singimpact.documents.document_steps import Step
-from singimpact.documents.rendering import environment, latex_words, lines_of
+from singimpact.documents.rendering import environment, latex_words
 from singimpact.paper.sections.stored_sections import kept_sections, marks_of
 from singimpact.store import folder, written
 
