@@ -109,7 +109,7 @@ def defined(name: str) -> Callable[[Expression], Expression] | None:
     Examples
     --------
     >>> sinh = defined("sinh")
-    >>> print(sinh(Name("x")), defined("gamma"))
+    >>> print(sinh(expressions.Name("x")), defined("gamma"))
     0.5*(exp(x) - exp(-x)) None
     """
     name = SYNONYMS.get(name, name)
