@@ -222,7 +222,7 @@ def test_where_a_c_does_not_press_nothing_is_followed():
         flow = AnalyticFlow(found.releases.model(found.value), 200)
         assert border_digits._followed(flow, ends, found.entry) is not None
         assert border_digits._followed(flow, ends, 0) is None
-        assert border_digits._rising_zero(flow, ends[0] + 0.1) is None
+        assert border_digits.rising_zero(flow, ends[0] + 0.1) is None
 
 
 def test_a_flow_of_all_numbers_in_a_ball_contains_each():
