@@ -95,7 +95,7 @@ def numbers(quick: bool) -> dict[str, Any]:
         left.append((exponent, f"{float(rest / root**3):.4f}"))
     law = near_one()
     ratios = [(r, f"{over_law(r) / law:.4f}") for r in ("0.9", "0.99", "0.999")]
-    models, single = drawn(4 if quick else 40)
+    models, single = drawn(2 if quick else 40)
     low, high = elastic().invariant
     return {
         "table": [(r, str(kappa(r, digits))) for r in rates],
@@ -136,8 +136,8 @@ def figures(quick: bool) -> dict[str, Figure]:
     return {
         "orbits": orbits_beside(),
         "plane": si.figure("B11"),
-        "slices": slices(5 if quick else 24),
-        "limits": limits(4 if quick else 14),
+        "slices": slices(2 if quick else 24),
+        "limits": limits(3 if quick else 14),
     }
 
 
