@@ -19,6 +19,8 @@ from fractions import Fraction
 from functools import partial
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from singimpact.algebra.balls import Balls, as_rational
 from singimpact.algebra.expressions import number
 from singimpact.algebra.numbers import rational_ends
@@ -37,7 +39,7 @@ from singimpact.oscillator.moving_number import with_number
 from singimpact.result import Results
 
 BITS, DIGITS = 100, 20  # of balls, and of the flights of middles
-AROUND = Fraction(1, 2**7)  # a zero of a_c moves by less, of the period, within a piece
+AROUND = 7, 10, 13  # a zero of a_c is alone in so much of the period on both sides: powers of 1/2 that are tried
 LATE = 30  # impacts, after the first that may be followed by rest, at which bounds of the chatter are tried
 WIDE = 3  # a velocity whose bounds are so many times wider than it is followed no more
 
@@ -115,7 +117,8 @@ def resting_windows(
 
     Raises
     ------
-    InputError : a model that balls do not fly or without a period; ends that are none.
+    InputError : a model that balls do not fly or without a period; ends that are none, or between which nothing is
+        released.
 
     Examples
     --------
@@ -132,7 +135,8 @@ def resting_windows(
     osc = with_number(osc, over)
     releases = Releases(osc, over, whole("periods", periods, 1, 1000))
     least = (ends[1] - ends[0]) / whole("pieces", pieces, 1, 10**6)
-    phases = rising_zeros(releases.model(sum(ends) / 2))
+    phases = max((rising_zeros(releases.model(value)) for value in (sum(ends) / 2, *ends)), key=len)
+    require(bool(phases), "between", between, f"values of {over} for which a_c rises through zero at some time")
     windows = [
         RestingWindow(low, high, index, after)
         for index in range(len(phases))
@@ -151,8 +155,11 @@ def _searched(
         middle = (low + high) / 2
         model = releases.model(middle)
         near = releases.followed(model, phases)
-        orbit = releases.orbit(model, near, index)
-        if orbit.place and _rests(releases, orbit, (low, high)):
+        # next to a swan releases are not followed from far, and may have vanished
+        if not np.isfinite(near).all():
+            near = rising_zeros(model)
+        orbit = releases.orbit(model, near, index) if len(near) == len(phases) else None
+        if orbit is not None and orbit.place and _rests(releases, orbit, (low, high)):
             yield low, high, float(round((orbit.zeros[orbit.place - 1] - orbit.tau) / clock(model), 9))
         elif high - low > least:
             pieces += [(middle, high), (low, middle)]
@@ -170,11 +177,14 @@ def _rests(releases: Releases, orbit: Released, ends: tuple[Fraction, Fraction])
     # whether all members come to rest before that zero of a_c before which the orbit of the middle does
     low, high = ends
     half, balls = (high - low) / 2, Balls(BITS)
-    around = AROUND * Fraction(clock(orbit.model))
+    period = Fraction(clock(orbit.model))
     with balls_at(BITS):
         flow = AnalyticFlow(orbit.model, BITS, (releases.over, balls.interval(low, high)))
         times = orbit.tau, float(orbit.zeros[orbit.place - 1])
-        start, end = (rising_zero(flow, time, around) for time in times)
+        for around in (period / 2**power for power in AROUND):
+            start, end = (rising_zero(flow, time, around) for time in times)
+            if start is not None and end is not None:
+                break
         own = rising_zero(AnalyticFlow(orbit.model, BITS), orbit.tau)
         if start is None or end is None or own is None:
             return False
@@ -228,6 +238,8 @@ def flown_sets(
             middle = certified_hit(model, launch({} if released is None else {"tau": released}), DIGITS, horizon)
             members = certified_hit(model, launch(radii), DIGITS, horizon, derivative=True)
         except (Refused, NoHit):
+            return
+        if not all(by.is_finite() for row in members.derivative for by in row):
             return
         lines, released, removed = _taken(members, middle, lines, halves), None, 1
         if not lines[1].centre > WIDE * lines[1].reach(halves):

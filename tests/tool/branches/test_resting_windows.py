@@ -118,12 +118,20 @@ def test_flights_from_other_phases_and_long_waits_are_left_open():
     assert not found
 
 
+def test_where_a_swan_takes_the_release_away_nothing_is_said():
+    """At c = 1 the arc in which a_c > 0 vanishes; next to it the hop is short and rests."""
+    found = si.resting_windows(si.linear("2.8", "0.7", "1/2"), "clearance", ("0.98", "1.01"), pieces=300)
+    assert found[0].high > 0.99
+    assert found[-1].high < 1
+
+
 @pytest.mark.parametrize(
     ("change", "words"),
     [
         ({"osc": BALL.replace(restitution=1)}, "restitution"),
         ({"osc": si.ImpactOscillator("1", "t**3", 0, "1/2")}, "one with a period"),
         ({"over": "mass"}, "mass"),
+        ({"osc": si.linear("2.8", 0, "1/2"), "over": "clearance", "between": ("1.5", "1.6")}, "rises through zero"),
         ({"between": (2, 1)}, "low < high"),
         ({"between": ("1.9", "1.9")}, "low < high"),
         ({"pieces": 0}, "pieces"),
