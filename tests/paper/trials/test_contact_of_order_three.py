@@ -114,6 +114,9 @@ def test_where_nothing_is_lost_it_is_the_curve_of_swans():
     assert ratios[0] < ratios[1] < 1
     assert 1 - ratios[1] < 0.25 * (1 - ratios[0])
     assert 1 - ratios[1] < 0.002
+    # what is left is of the order (1 - r)^(6/7): one of (1 - r)^(3/7) would grow by 2.7 here
+    left = [(1 - ratio) / (1 - float(r)) ** (6 / 7) for r, ratio in zip(("0.99", "0.999"), ratios, strict=True)]
+    assert 1 < left[1] / left[0] < 1.3
 
 
 @pytest.mark.parametrize("r", [0.2, 0.5, 0.9])

@@ -137,37 +137,40 @@ def _without_rebound(stated: tuple[sympy.Expr, ...]) -> Check:
     )
 
 
-def _elastic(stated: tuple[int, sympy.Expr, str]) -> Check:
-    """(p, formula, C): the limit of h^(7/3)/(1 - r), 2h = t_2 - t_1; kappa less its swan is like C (1 - r)^(3p/7).
+def _elastic(stated: tuple[sympy.Expr, sympy.Expr, str]) -> Check:
+    """(kappa^2, formula, C): kappa by the share e, the limit of e^(7/3)/(1 - r), and C of kappa - kappa(0) in e^2.
 
-    u = v/|a_c|^(1/3) after the swan is that of the elastic ball there, h^(7/3) u/12^(2/3), as r -> 1.
+    Of the way from the middle of t_1 and t_2 to t_3 the part e is before t_2. u = v/|a_c|^(1/3) after the swan is that
+    of the elastic ball there, (1 - h)^(2/3) h^(7/3) u/12^(2/3) with 2h = t_2 - t_1, e = h/(1 - h), as r -> 1.
     """
-    power, formula, value = stated
-    first, second = (sympy.diff((Q / P ** sympy.Rational(3, 2)).subs(b, 1 - 2 * e), e, n).subs(e, 0) for n in (1, 2))
+    square, formula, value = stated
+    shares = {b: (1 - e) / (1 + e)}
     # of a flight of length T under the push 1 + s x + S x^2: launch and landing over T/2, and the push at its end
     launch, landing, end = 1 + s * T / 3 + S * T**2 / 6, 1 + 2 * s * T / 3 + S * T**2 / 2, 1 + s * T + S * T**2
     change = sympy.expand(landing**3 - launch**3 * end)
     whole = sympy.gammasimp(sympy.gamma(sympy.Rational(5, 3)) * sympy.gamma(sympy.Rational(7, 3)) / 6)
-    bounds = [second / 2 * formula.subs(m, sympy.Rational(end)) ** sympy.Rational(6, 7) for end in elastic().invariant]
+    rise = -sympy.diff(square, e, 2).subs(e, 0) / (4 * sympy.sqrt(square.subs(e, 0)))
+    bounds = [rise * formula.subs(m, sympy.Rational(end)) ** sympy.Rational(6, 7) for end in elastic().invariant]
     printed = [f"{sympy.N(bound, 20):.{len(value) - 2}f}" for bound in bounds]
     return every(
         [
             ("u changes at the third order of a flight", all(change.coeff(T, n) == 0 for n in range(3))),
+            (
+                "and t |a_c|^(2/3) = 2u is the integral of |a_c|^(2/3) up to the second order",
+                same(launch.coeff(T, 1), sympy.diff((1 + s * x) ** sympy.Rational(2, 3), x).subs(x, 0) / 2),
+            ),
             (
                 "where |a_c| falls launches are slower, landings faster than under one push, so each flight is longer "
                 "than r times the last, and shorter than 1 - r of the way to t_3",
                 positive_in(m * x * (1 - x), {x: (0, 1), m: (0, sympy.oo)}),
             ),
             (
-                "so the changes of u vanish in all, and t |a_c|^(2/3) = 2u adds up to the integral of |a_c|^(2/3)",
+                "so the changes of u vanish in all, and 2u/(1 - r) is the integral from t_2 to t_3",
                 same(CUBIC.subs(b, 1), x * (x + 1) ** 2)
                 and is_zero(12 ** sympy.Rational(2, 3) * whole / (2 * m) - formula),
             ),
-            (f"kappa exceeds that of the swan by {second / 2} h^{power}", first == 0 and power == 2),
-            (
-                f"and {second / 2} times the {power * 3}/7-th power of that limit is {' to '.join(printed)}",
-                {*printed} == {value},
-            ),
+            (f"kappa is the root of {square}, even in e", same((Q**2 / P**3).subs(shares), square)),
+            (f"and {rise} times the 6/7-th power of that limit is {' to '.join(printed)}", {*printed} == {value}),
         ],
         "argued",
         witness=lambda: {"value": str(printed), "stated": value},
@@ -203,6 +206,7 @@ def _events(stated: tuple[int, int, sympy.Expr]) -> Check:
 
 ROOTS = tuple(map(sympy.sqrt, (19, 38, 57)))
 USED = 4 * sympy.pi * 12 ** sympy.Rational(2, 3) / (81 * sympy.sqrt(3) * m)  # m is u of the universal swan
+SHARED = sympy.Rational(4, 27) * (1 - 9 * e**2) ** 2 / (1 + 3 * e**2) ** 3
 RESTED = (-56 * ROOTS[2] / 3249, -225 * ROOTS[0] / 13718, -2625 * ROOTS[2] / 260642 - 225 * ROOTS[1] / 109744)
 CLAIMS = {
     "b:border-order": Encoding((2, -1), _every_order, ((1, -1), (3, -1), (2, 1))),
@@ -218,8 +222,8 @@ CLAIMS = {
         ((-2, 3, 2 * sympy.sqrt(2) / 27), (-2, 3, -sympy.sqrt(2) / 27), (2, -3, -2 * sympy.sqrt(2) / 27)),
     ),
     "b:three-elastic": Encoding(
-        (2, USED, "0.2844281"),
+        (SHARED, USED, "0.2844281"),
         _elastic,
-        ((1, USED, "0.2844281"), (2, 2 * USED, "0.2844281"), (2, USED, "0.2844282")),
+        ((4 * SHARED, USED, "0.2844281"), (SHARED, 2 * USED, "0.2844281"), (SHARED, USED, "0.2844282")),
     ),
 }
