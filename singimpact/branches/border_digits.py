@@ -255,11 +255,13 @@ def rising_zero(flow: AnalyticFlow, near: float, around: Fraction = SETTINGS.aro
     low, high = middle - reach, middle + reach
     if not (flow.acceleration(low) < 0 and flow.acceleration(high) > 0 and flow.acceleration(low.union(high), 1) > 0):
         return None
-    return newton_in_balls(flow.acceleration, lambda t: flow.acceleration(t, 1), low.union(high))
+    zero = newton_in_balls(flow.acceleration, lambda t: flow.acceleration(t, 1), low.union(high))
+    # so a_c is known to rise from half of `around` before the zero of each value: `presses` looks no farther
+    return zero if zero is not None and abs(zero - middle) < reach / 2 else None
 
 
 def presses(acceleration: Callable[..., Any], time: Any, end: Any, around: Fraction) -> bool:
-    """Whether a_c < 0 from a time up to a zero where it rises, before which it is known to rise for `around`."""
+    """Whether a_c < 0 from a time up to a zero where it rises, as `rising_zero` found it."""
     high = as_rational(end) - around / 2
     pieces, left = [(as_rational(time.lower()), high)], SETTINGS.pieces
     balls = Balls(128)

@@ -7,14 +7,15 @@ After an impact the states of all members of an interval lie in one set
 d the number less that of the middle, h half the length of the interval, with bounds of e and e'; a set that starts as a
 parallelogram has two more terms of this kind. The next impact takes this set to another one: its centre is the image of
 the middle's, and by the mean value theorem (b, b') is taken by D G, in balls over a box that holds the set; what these
-balls are wide joins e. The mass is at rest where a_c presses from an
-impact up to a zero of a_c, and bounds of what is left of the chatter end before that zero (`enclosed.side`).
+balls are wide joins e. The mass is at rest where a_c presses from an impact up to a zero of a_c, and bounds of what is
+left of the chatter end before that zero (`enclosed.side`).
 
 Next to a release x - c is of third order in the time since then, for each member at its own release: terms of second
 order, which other members of the box have, are left out.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
 from typing import Any, NamedTuple
@@ -36,15 +37,16 @@ from singimpact.flights.horizons import horizon_of
 from singimpact.inputs import checked_keywords, require, whole
 from singimpact.oscillator.model import Oscillator, require_rebound
 from singimpact.oscillator.moving_number import with_number
-from singimpact.result import Results
+from singimpact.result import Result, Results
 
 BITS, DIGITS = 100, 20  # of balls, and of the flights of middles
 AROUND = 7, 10, 13  # a zero of a_c is alone in so much of the period on both sides: powers of 1/2 that are tried
 LATE = 30  # impacts, after the first that may be followed by rest, at which bounds of the chatter are tried
-WIDE = 3  # a velocity whose bounds are so many times wider than it is followed no more
+WIDE = 3  # sets are followed while the velocity of the middle is so many times the largest distance from it
 
 
-class RestingWindow(NamedTuple):
+@dataclass(frozen=True)
+class RestingWindow(Result):
     """An interval of the number, the index of the release, and after how many periods a_c next lifts the mass off.
 
     For all numbers of low <= number <= high the orbit released at that zero of a_c comes to rest, first before that
@@ -67,20 +69,14 @@ class RestingWindows(Results, list[RestingWindow]):
 
     called = "windows"
 
-    def __init__(
-        self,
-        windows: Iterable[RestingWindow] = (),
-        between: tuple[Fraction, Fraction] = (Fraction(0), Fraction(0)),
-        releases: int = 1,
-    ) -> None:
+    def __init__(self, windows: Iterable[RestingWindow], between: tuple[Fraction, Fraction], releases: int) -> None:
         super().__init__(windows)
         self.between, self.releases = between, releases
 
     @property
     def share(self) -> Fraction:
         """Of the interval, times the releases, that the windows cover."""
-        low, high = self.between
-        return sum((one.high - one.low for one in self), Fraction(0)) / ((high - low) * self.releases)
+        return sum(one.high - one.low for one in self) / (self.releases * (self.between[1] - self.between[0]))
 
 
 class Line(NamedTuple):
@@ -129,8 +125,8 @@ def resting_windows(
     """
     require(isinstance(osc, Oscillator), "osc", osc, "an ImpactOscillator")
     require_rebound(osc, "rest after chatter")
-    flown = osc.period is not None and enclosable(osc)
-    require(flown, "model", osc, "one with a period, whose restitution is a number below 1")
+    accepted = "one with a period, whose restitution is a number below 1"
+    require(osc.period is not None and enclosable(osc), "model", osc, accepted)
     ends = rational_ends("between", between, "two rational numbers low < high")
     osc = with_number(osc, over)
     releases = Releases(osc, over, whole("periods", periods, 1, 1000))

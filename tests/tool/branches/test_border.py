@@ -223,6 +223,9 @@ def test_where_a_c_does_not_press_nothing_is_followed():
         assert border_digits._followed(flow, ends, found.entry) is not None
         assert border_digits._followed(flow, ends, 0) is None
         assert border_digits.rising_zero(flow, ends[0] + 0.1) is None
+        # `presses` asks for a_c up to half of what was looked at before the zero, so the zero must not be nearer
+        zeros = [border_digits.rising_zero(flow, ends[0] + off, Fraction(1, 64)) for off in (0.007, 0.009, 0.014)]
+        assert [zero is None for zero in zeros] == [False, True, True]
 
 
 def test_a_flow_of_all_numbers_in_a_ball_contains_each():

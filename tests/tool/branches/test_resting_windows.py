@@ -1,6 +1,7 @@
 """Windows in which the released orbit rests: beside closed forms, scipy, and the border orbits that bound them."""
 
 import math
+import pickle
 
 import numpy as np
 import pytest
@@ -47,6 +48,8 @@ def test_all_orbits_of_the_windows_of_a_ball_rest_as_they_say():
     (widest,) = (one for one in found if one.high - one.low > 1 / 50)
     assert widest.periods == 5
     assert widest.release == 0
+    assert found.as_dict()["windows"][0].keys() == {"low", "high", "release", "periods"}
+    assert pickle.loads(pickle.dumps(found)).share == found.share
     rng = np.random.default_rng(1)
     for G in rng.uniform(float(widest.low), float(widest.high), 12):
         assert rests_after(G, 0.5) == 5
