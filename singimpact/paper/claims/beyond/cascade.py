@@ -12,7 +12,7 @@ from singimpact.algebra.balls import Balls
 from singimpact.algebra.certificates import positive_on
 from singimpact.algebra.numbers import Array, constant, rational_near
 from singimpact.algebra.precision import balls_at
-from singimpact.branches.border import BorderOrbit, border_orbits
+from singimpact.branches.border import border_orbits
 from singimpact.branches.border_digits import rising_zero
 from singimpact.branches.resting_windows import Line, Lines, flown_sets, released_sets, resting_windows
 from singimpact.dynamics.long_run import rising_zeros
@@ -95,15 +95,16 @@ def _rests(stated: tuple[str, str, int, tuple[str, str]]) -> Check:
     """
     low, high, periods, borders = stated
     windows = resting_windows(BALL, "G", (low, high), periods=periods, pieces=PIECES)
-    beside = list[BorderOrbit]()
-    for edge in map(Fraction, borders):
-        near = float(edge - NEXT), float(edge + NEXT)
-        beside += border_orbits(BALL, "G", near, digits=DIGITS, periods=periods, points=3)
+    beside = [
+        orbit
+        for edge in map(float, borders)
+        for orbit in border_orbits(BALL, "G", (edge - NEXT, edge + NEXT), digits=DIGITS, periods=periods, points=3)
+    ]
     values = [orbit.certified for orbit in beside]
     return every(
         [
             (
-                f"balls fly all orbits of an interval of G, which covers {float(windows.share):.6g} of it",
+                f"balls fly the orbits of all G of a share of {float(windows.share):.6g} between {low} and {high}",
                 windows.share == 1 and {one.periods for one in windows} == {periods},
             ),
             (
@@ -159,8 +160,8 @@ def _never_rests(stated: tuple[str, Fraction, int, Fraction]) -> Check:
 
     _, sides = np.linalg.eig(np.array([line.slopes[1:] for line in returned(np.eye(2))], dtype=float))
     (a, b), (c, d) = ([Fraction(side) for side in row] for row in sides.tolist())
-    size_of = a * d - b * c
-    trap = _Trap(corner, ((d / size_of, -b / size_of), (-c / size_of, a / size_of)), size)
+    area = a * d - b * c
+    trap = _Trap(corner, ((d / area, -b / area), (-c / area, a / area)), size)
     with balls_at(BITS):
         ball = Balls(BITS).interval(Fraction(amplitude) - half, Fraction(amplitude) + half)
         start = [
@@ -188,10 +189,10 @@ def _never_rests(stated: tuple[str, Fraction, int, Fraction]) -> Check:
     )
 
 
-BITS, ROUNDED = 128, Fraction(1, 2**90)
+BITS, ROUNDED = 128, Fraction(1, 2**90)  # of the balls; more than the error of a period times their number
 BALL = Oscillator("1", "G*sin(t)", 0, "1/2", {"G": "19/10"})
 PIECES, DIGITS = 256, 16
-NEXT = Fraction(1, 10**4)  # half the width of the search for a border orbit
+NEXT = Fraction(1, 10**4)  # half the width of the search for a border orbit, and for a release
 BORDERS = ("1.893700796003", "1.939751233691")
 CLAIMS = {
     "b:cascade-launch": Encoding(

@@ -9,8 +9,8 @@ from singimpact.paper.claims.verifiers import every, is_zero, same
 from singimpact.paper.routes import unfolding as model
 from singimpact.paper.routes.unfolding import kappa, r, sigma, t, u
 
-slow, m, kick, w, d, h, mu, nu = sympy.symbols("lambda m c w d h mu nu", positive=True)
-BORN = (1 - d) / (2 * d), kick**2 * d / (1 - d) ** 2, sympy.Rational(2, 3), 1 / (nu - mu)
+slow, m, kick, w, d, h, mu, nu, pull = sympy.symbols("lambda m c w d h mu nu a", positive=True)
+BORN = (1 - d) / (2 * d), kick**2 * d / (1 - d) ** 2, sympy.Rational(2, 3), (1 + r) * sympy.sqrt(2 * pull) / (nu - mu)
 v, s, bend, drop, rate = sympy.symbols("v s A2 dc a_c")  # A2 = |a''|, a_c = |da/dc|
 WINDOW = {sigma: (-5, 5), t: (0, 12), r: (0, 1)}  # of the universal model, in half distances
 
@@ -62,16 +62,18 @@ def _hop(stated: tuple[sympy.Expr, sympy.Expr, sympy.Expr, sympy.Expr]) -> Check
 
 
 def _exponent(stated: tuple[sympy.Expr, sympy.Expr, sympy.Expr, sympy.Expr]) -> Check:
-    """(stretch, e^B, lambda, share): a return has the exponent E ln stretch, and (|ln e| + B)/(2 |ln lambda|) periods.
+    """(stretch, e^B, lambda, c): a return has the exponent E ln stretch, and (|ln e| + B)/(2 |ln lambda|) periods.
 
     Of the limit of the square-root map as a non-impacting orbit passes the wall by e = w^2: an impact of the depth e d,
     d = h^2, throws the slow part of the motion to e s, s = lambda^m c h/w, m periods later. There lambda < s <= 1, and
-    the next d is 1 - s. Above the stated lambda all returns expand. share : the slow part of a velocity of 1.
+    the next d is 1 - s. Above the stated lambda all returns expand.
     """
-    stretch, periods, least, share = stated
+    stretch, periods, least, kicked = stated
     thrown = slow**m * kick * h / w
-    free = share * (sympy.exp(-mu * t) - sympy.exp(-nu * t))
-    motion = sympy.diff(free, t, 2) + (mu + nu) * sympy.diff(free, t) + mu * nu * free
+    free = kicked * (sympy.exp(-mu * t) - sympy.exp(-nu * t))
+    fast = sympy.diff(pull * t**2 / 2, t).subs(t, sympy.sqrt(2 / pull)) ** 2  # as the turn is 1 below the wall
+    speed = sympy.diff(free, t)
+    motion = sympy.diff(speed, t) + (mu + nu) * speed + mu * nu * free
     slowest = slow / (2 * (1 - slow))
     return every(
         [
@@ -86,8 +88,8 @@ def _exponent(stated: tuple[sympy.Expr, sympy.Expr, sympy.Expr, sympy.Expr]) -> 
                 positive_in(slowest - 1, {slow: (least, 1)}) and slowest.subs(slow, least) == 1,
             ),
             (
-                "the slow part of a velocity is that of a motion that starts at 0",
-                is_zero(motion) and same(sympy.diff(free, t).subs(t, 0), 1),
+                "c is the slow part of 1 + r of sqrt(2 a), with which a motion that turns at depth 1 meets the wall",
+                is_zero(sympy.expand(motion / kicked)) and same((speed.subs(t, 0) / (1 + r)) ** 2, fast),
             ),
         ],
         "argued",
@@ -106,7 +108,7 @@ CLAIMS = {
             (2 * BORN[0], *BORN[1:]),
             (BORN[0], BORN[1] * (1 - d), *BORN[2:]),
             (*BORN[:2], sympy.Rational(3, 4), BORN[3]),
-            (*BORN[:3], 1 / nu),
+            (*BORN[:3], BORN[3] / (1 + r)),
         ),
     ),
     "b:onset-none": Encoding(sigma, _rises, (-sigma, v, sigma - v, sigma + v)),
