@@ -83,6 +83,32 @@ def test_planted_banned_call_is_seen(text):
     assert banned_uses(text)
 
 
+def words_of(key):
+    """The words of a check that a mapping names; what a run puts into them is left open."""
+    parts = key.values if isinstance(key, ast.JoinedStr) else [key]
+    return "".join(part.value if isinstance(part, ast.Constant) else "{}" for part in parts)
+
+
+def hidden_checks(text):
+    """Lines of mappings given to `every` in which two checks may have one name: the later one would be the only one."""
+    nodes = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Call) and node.args]
+    calls = [node for node in nodes if getattr(node.func, "id", "") in ("every", "persisting")]
+    tables = [call.args[0].keys for call in calls if isinstance(call.args[0], ast.Dict)]
+    return [keys[0].lineno for keys in tables if len({words_of(key) for key in keys}) < len(keys)]
+
+
+def test_no_check_of_a_claim_hides_another(clone):
+    found = {path: hidden_checks(text) for path, text in sources(clone).items() if path.startswith("paper/")}
+    assert sum(text.count("every(\n        {") for text in sources(clone).values()) > 5
+    assert {path: lines for path, lines in found.items() if lines} == {}
+
+
+@pytest.mark.parametrize("keys", ['"it is 0": a, "it is 0": b', 'f"{x} is 0": a, f"{y} is 0": b'])
+def test_a_planted_check_of_the_same_name_is_seen(keys):
+    assert hidden_checks(f"every({{{keys}}})")
+    assert not hidden_checks(f"every({{{keys.replace('is', 'was', 1)}}})")
+
+
 @pytest.mark.parametrize(
     "text", ["import numpy\nimport sympy\nnumpy.linalg.solve(a, b)", "import sympy\nsympy.Poly(x).resultant(y)"]
 )
