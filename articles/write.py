@@ -1,14 +1,15 @@
 """An article with its figures: `python articles/write.py border_orbits -o FOLDER`, then latexmk -pdf there.
 
-Each has two files here: NAME.py computes its numbers and draws its figures, NAME.tex.j2 is its text. Theorems, proofs
-and their formulas are those of `singimpact derive`, by label; no number that is measured stands in a template.
+Each has three files here: NAME.py computes its numbers, NAME_pictures.py draws, and NAME.tex.j2 is its text. Theorems,
+proofs and their formulas are those of `singimpact derive`, by label; no number that is measured stands in a template.
 """
 
 from __future__ import annotations
 
 import argparse
-import runpy
+import sys
 from collections.abc import Mapping
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +22,7 @@ from singimpact.paper.sections.stored_sections import kept_sections, marks_of
 from singimpact.store import folder, written
 
 HERE = Path(__file__).parent
+sys.path.insert(0, str(HERE))  # whoever runs this file, or a test of it, finds the parts
 NAMES = tuple(sorted(path.name.removesuffix(".tex.j2") for path in HERE.glob("*.tex.j2") if path.name[0] != "_"))
 
 
@@ -71,10 +73,9 @@ def article(name: str, into: Path, quick: bool = False) -> Path:
     ----------
     quick : with fewer points and digits: what a test builds.
     """
-    parts = runpy.run_path(str(HERE / f"{name}.py"))
-    text = filled(name, parts["numbers"](quick))
+    text = filled(name, import_module(name).numbers(quick))
     folder(into)
-    for figure, picture in parts["figures"](quick).items():
+    for figure, picture in import_module(f"{name}_pictures").pictures(quick).items():
         picture.savefig(into / f"{figure}.pdf", bbox_inches="tight")
     path = into / f"{name}.tex"
     with written(path) as draft:

@@ -45,7 +45,7 @@ LATE = 30  # impacts, after the first that may be followed by rest, at which bou
 WIDE = 3  # sets are followed while the velocity of the middle is so many times the largest distance from it
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, order=True)
 class RestingWindow(Result):
     """An interval of the number, the index of the release, and after how many periods a_c next lifts the mass off.
 

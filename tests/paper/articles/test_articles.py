@@ -24,7 +24,7 @@ def typed(text):
 
 def test_both_articles_are_here():
     assert NAMES == ("border_orbits", "leak")
-    assert all((FOLDER / f"{name}.py").is_file() for name in NAMES)
+    assert all((FOLDER / f"{name}{part}.py").is_file() for name in NAMES for part in ("", "_pictures"))
 
 
 @pytest.mark.parametrize("name", NAMES)
